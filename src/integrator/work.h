@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every integrator reads and counts.
+#ifndef SHEEN_INTEGRATOR_WORK_H
+#define SHEEN_INTEGRATOR_WORK_H
+
+#include "base/log.h"
+#include "base/pool.h"
+#include "base/progress.h"
+#include "film/film.h"
+#include "light/light.h"
+#include "ray/accel.h"
+#include "scene/scene.h"
+
+typedef enum SheenSecondary { SHEEN_SECONDARY_CACHE, SHEEN_SECONDARY_PATH } SheenSecondary;
+typedef enum SheenGradients { SHEEN_GRADIENTS_STRATIFIED, SHEEN_GRADIENTS_NONE } SheenGradients;
+
+/** Options of a render; sheen_options_default gives the documented defaults. */
+typedef struct SheenOptions {
+    uint32_t spp;           // samples per pixel
+    uint32_t light_samples; // light samples for each shading point
+    uint32_t bounces;       // indirect bounces; 0 is direct light only
+    double time_limit;      // seconds, path only; 0 for none
+    float accuracy;         // a: a record is used where w > 1/a
+    uint32_t gather_rays;   // rays for each record
+    SheenGradients gradients;
+    SheenSecondary secondary;
+    bool neighbor_clamping, gradient_clamping;
+    uint32_t seed;
+} SheenOptions;
+
+SheenOptions sheen_options_default(void);
+
+/** Counters and seconds of a render. */
+typedef struct SheenStats {
+    double time_visibility, time_fill, time_direct, time_interpolate;
+    uint64_t rays_camera, rays_shadow, rays_gather, rays_path, rays_specular;
+    uint64_t records;      // of the cache that the picture reads
+    uint64_t deep_records; // of the light beyond the first bounce
+    uint64_t cache_bytes;
+    uint32_t passes; // waves of the fill; passes of `path`
+    uint32_t spp_done;
+    uint64_t nonfinite_samples;
+} SheenStats;
+
+/** Adds the counters (not the times) of one worker to a total. */
+void sheen_stats_add(SheenStats *total, const SheenStats *part);
+
+/** The inputs of an integrator, all borrowed. */
+typedef struct SheenWork {
+    const SheenScene *scene;
+    const SheenAccel *accel;
+    const SheenLights *lights;
+    const SheenCamera *camera;
+    uint32_t width, height; // of the picture, may differ from the camera's own
+    SheenOptions options;
+    SheenPool *pool;
+    const atomic_bool *cancel; // may be NULL
+    const SheenProgress *progress;
+    const SheenLog *log;
+} SheenWork;
+
+/**
+ * The camera ray through a point of the picture.
+ * @param x, y  in pixels, (0, 0) the upper left corner of the picture
+ */
+Ray sheen_camera_ray(const SheenCamera *camera, uint32_t width, uint32_t height, float x, float y);
+
+/**
+ * Integrators: render the whole picture into the film and count into *stats.
+ * Errors: SHEEN_ERR_NOMEM, SHEEN_ERR_CANCELLED (the film is then incomplete).
+ */
+SHEEN_NODISCARD SheenStatus sheen_path_render(const SheenWork *work, SheenFilm *film, SheenStats *stats);
+SHEEN_NODISCARD SheenStatus sheen_irradiance_render(const SheenWork *work, SheenFilm *film, SheenStats *stats);
+
+#endif

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// The immutable scene: plain arrays, made by a builder (scene/builder.h), read by everybody.
+#ifndef SHEEN_SCENE_SCENE_H
+#define SHEEN_SCENE_SCENE_H
+
+#include "math/bounds.h"
+#include "math/frame.h"
+#include "math/transform.h"
+#include "math/vec.h"
+#include "scene/texture.h"
+
+#include <stdint.h>
+
+/** "No such index" in all index fields of the scene. */
+#define SHEEN_NONE UINT32_MAX
+
+// ---- shapes -----------------------------------------------------------------------------------------------------
+
+typedef enum SheenShapeKind { SHEEN_SHAPE_MESH, SHEEN_SHAPE_SPHERE, SHEEN_SHAPE_DISK } SheenShapeKind;
+
+/** Triangles in world space (or in their group's space). The front side is where the vertices run counter-clockwise. */
+typedef struct SheenMesh {
+    uint32_t n_vertices, n_triangles;
+    const Vec3 *p;                  // [n_vertices + 1], metres; the last is padding for Embree's 16-byte loads
+    const Vec3 *n;                  // [n_vertices] unit shading normals, NULL for face normals
+    const Vec2 *uv;                 // [n_vertices], NULL when the mesh has none
+    const uint32_t (*triangles)[3]; // [n_triangles] indices of vertices
+} SheenMesh;
+
+/** The front side is outside, or inside when `flip`. */
+typedef struct SheenSphere {
+    Vec3 center;
+    float radius;
+    bool flip;
+    Frame frame; // object axes in the world, for uv: u = azimuth / 2 pi, v = polar angle / pi about frame.n
+} SheenSphere;
+
+/** Points center + x du + y dv with x^2 + y^2 <= 1; an ellipse when du and dv differ. */
+typedef struct SheenDisk {
+    Vec3 center, du, dv;
+    Vec3 n; // unit, du x dv normalized or its negative: the front side
+} SheenDisk;
+
+typedef struct SheenShape {
+    SheenShapeKind kind;
+    union {
+        SheenMesh mesh;
+        SheenSphere sphere;
+        SheenDisk disk;
+    };
+    uint32_t material; // index into scene->materials
+    uint32_t light;    // index into scene->lights of the area light on this shape, or SHEEN_NONE
+    const char *name;  // for messages; never NULL
+} SheenShape;
+
+/** A run of shapes that is placed as a whole. Group 0 is the world and is placed once, untransformed. */
+typedef struct SheenGroup {
+    uint32_t first_shape, n_shapes;
+} SheenGroup;
+
+/** A copy of a group other than 0. One level only: instances hold no instances. */
+typedef struct SheenInstance {
+    uint32_t group;
+    Transform to_world, to_group; // inverses of each other
+} SheenInstance;
+
+// ---- materials --------------------------------------------------------------------------------------------------
+
+typedef enum SheenMaterialKind {
+    SHEEN_MATERIAL_DIFFUSE,         // Lambertian: reflectance
+    SHEEN_MATERIAL_CONDUCTOR,       // smooth metal: eta, k, specular_reflectance
+    SHEEN_MATERIAL_DIELECTRIC,      // smooth glass: ior, specular_reflectance, specular_transmittance
+    SHEEN_MATERIAL_THIN_DIELECTRIC, // a pane without thickness: the same parameters
+} SheenMaterialKind;
+
+typedef struct SheenMaterial {
+    SheenMaterialKind kind;
+    bool two_sided;                      // the back side looks like the front (not for dielectrics)
+    SheenTexture reflectance;            // diffuse albedo
+    SheenTexture specular_reflectance;   // factor on reflection
+    SheenTexture specular_transmittance; // factor on transmission
+    Rgb eta, k;                          // conductor: complex refractive index relative to outside
+    float ior;                           // dielectric: interior over exterior refractive index
+    const char *name;                    // id in the scene file or plugin name; never NULL
+} SheenMaterial;
+
+// ---- lights -----------------------------------------------------------------------------------------------------
+
+typedef enum SheenLightKind {
+    SHEEN_LIGHT_AREA,        // radiance from the front side of a shape
+    SHEEN_LIGHT_POINT,       // radiance = intensity, W/sr
+    SHEEN_LIGHT_SPOT,        // intensity on the axis, linear falloff in angle between cos_inner and cos_outer
+    SHEEN_LIGHT_DIRECTIONAL, // radiance = irradiance on a surface that faces it, W/m^2
+    SHEEN_LIGHT_ENVIRONMENT, // constant (environment.width = 0) or an image
+} SheenLightKind;
+
+typedef struct SheenLight {
+    SheenLightKind kind;
+    Rgb radiance;   // W m^-2 sr^-1 for area and constant environment; see the kinds; factor for an environment image
+    uint32_t shape; // area: the shape, never inside an instanced group
+    Vec3 position;  // point, spot
+    Vec3 direction; // spot: axis; directional: the way the light travels; unit
+    float cos_inner, cos_outer;   // spot: full intensity inside, zero outside
+    SheenBitmap environment;      // float latitude-longitude image; row 0 is up, +y of its own space
+    Transform to_world, to_light; // environment image only. In its own space a direction d has
+                                  // u = atan2(d.x, -d.z) / 2 pi (wrapped to [0, 1)), v = acos(d.y) / pi
+} SheenLight;
+
+// ---- camera -----------------------------------------------------------------------------------------------------
+
+typedef struct SheenCamera {
+    const char *name;       // never NULL
+    Transform to_world;     // looks along +z, +y up, +x to the left in the picture (Mitsuba's convention); may mirror
+    float fov_x;            // full horizontal angle, radians, of the picture as the scene gives its size
+    uint32_t width, height; // pixels, from the scene's film
+    uint32_t spp;           // samples per pixel that the scene asks for, 0 when it says nothing
+} SheenCamera;
+
+// ---- the whole --------------------------------------------------------------------------------------------------
+
+typedef struct SheenScene {
+    const char *name; // file name of the scene
+    const SheenShape *shapes;
+    uint32_t n_shapes;
+    const SheenGroup *groups;
+    uint32_t n_groups; // >= 1
+    const SheenInstance *instances;
+    uint32_t n_instances;
+    const SheenMaterial *materials;
+    uint32_t n_materials;
+    const SheenLight *lights;
+    uint32_t n_lights;
+    uint32_t environment; // index of the environment light, or SHEEN_NONE; at most one
+    const SheenCamera *cameras;
+    uint32_t n_cameras;       // >= 1
+    Bounds bounds;            // of everything, world space; instances included
+    uint64_t n_triangles;     // stored, instances not multiplied
+    struct SheenArena *arena; // owns everything above
+} SheenScene;
+
+/** Frees the scene and sets *scene to NULL. NULL-safe. */
+void sheen_scene_destroy(SheenScene **scene);
+
+#endif

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Textures: a constant, a bitmap or a checkerboard over uv.
+#ifndef SHEEN_SCENE_TEXTURE_H
+#define SHEEN_SCENE_TEXTURE_H
+
+#include "math/vec.h"
+
+#include <stdint.h>
+
+/** Pixels of a bitmap texture: 8-bit with a table that maps each byte to a linear value, or float. */
+typedef struct SheenBitmap {
+    uint32_t width, height;
+    const uint8_t *bytes; // [height][width][3], NULL when float; row 0 is the top of the picture
+    const Rgb *floats;    // [height][width], NULL when bytes
+    const float *decode;  // [256], byte to linear value (sRGB curve, or x/255 for raw data)
+} SheenBitmap;
+
+typedef enum SheenTextureKind {
+    SHEEN_TEXTURE_CONSTANT,
+    SHEEN_TEXTURE_BITMAP,
+    SHEEN_TEXTURE_CHECKERBOARD
+} SheenTextureKind;
+typedef enum SheenWrap { SHEEN_WRAP_REPEAT, SHEEN_WRAP_MIRROR, SHEEN_WRAP_CLAMP } SheenWrap;
+
+typedef struct SheenTexture {
+    SheenTextureKind kind;
+    Rgb value;  // constant; first colour of the checkerboard
+    Rgb value2; // second colour of the checkerboard
+    SheenBitmap bitmap;
+    SheenWrap wrap;
+    bool nearest;   // nearest texel instead of bilinear
+    float uv[2][3]; // uv' = uv[.][0..1] (u, v) + uv[.][2]
+} SheenTexture;
+
+/** A constant texture. */
+SheenTexture sheen_texture_constant(Rgb value);
+
+/**
+ * @param uv  surface coordinates; v grows upward, so that (0, 0) is the lower left corner of a bitmap
+ * @return the texture's linear value; bilinear unless `nearest`. Pure, thread-safe.
+ */
+Rgb sheen_texture_eval(const SheenTexture *t, Vec2 uv);
+
+/** @return the mean of the texture over the unit square of uv' (exact for constants and bitmaps). */
+Rgb sheen_texture_mean(const SheenTexture *t);
+
+#endif
