@@ -45,7 +45,7 @@ bool sheen_accel_occluded(const SheenAccel *accel, const Ray *ray);
 
 /**
  * Nearest hits of n rays, traced in packets of 16 in the order given. Rays with t_max < 0 are skipped (their hit is a
- * miss). The results do not depend on how rays are grouped into packets. Thread-safe.
+ * miss). A hit depends on the batch only, not on threads or earlier batches. Thread-safe.
  */
 void sheen_accel_intersect_many(const SheenAccel *accel, SheenCoherence coherence, size_t n, const Ray rays[],
                                 Hit hits[]);

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ray/accel.h"
+
+#include "ray/quadric.h"
+
+#include <embree3/rtcore.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+struct SheenAccel {
+    RTCDevice device;
+    RTCScene world;
+    RTCScene *groups; // [n_groups]; groups[0] is NULL, the world is `world`
+    uint32_t n_groups;
+    uint32_t n_shapes; // Embree's geometry number of instance i is n_shapes + i
+};
+
+static RTCGeometry mesh_geometry(RTCDevice device, const SheenMesh *mesh)
+{
+    RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    if (!g) return NULL;
+    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh->p, 0, sizeof(Vec3),
+                               mesh->n_vertices);
+    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh->triangles, 0, 3 * sizeof(uint32_t),
+                               mesh->n_triangles);
+    rtcCommitGeometry(g);
+    return g;
+}
+
+static void attach(RTCScene rtc, RTCGeometry g, uint32_t id)
+{
+    rtcAttachGeometryByID(rtc, g, id);
+    rtcReleaseGeometry(g);
+}
+
+static RTCScene group_create(RTCDevice device, const SheenScene *scene, const SheenGroup *group)
+{
+    RTCScene rtc = rtcNewScene(device);
+    if (!rtc) return NULL;
+    rtcSetSceneFlags(rtc, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(rtc, RTC_BUILD_QUALITY_MEDIUM);
+    for (uint32_t i = group->first_shape; i < group->first_shape + group->n_shapes; ++i) {
+        const SheenShape *shape = &scene->shapes[i];
+        RTCGeometry g = shape->kind == SHEEN_SHAPE_MESH ? mesh_geometry(device, &shape->mesh)
+                                                        : sheen_quadric_geometry(device, shape);
+        if (g) attach(rtc, g, i);
+    }
+    return rtc;
+}
+
+static void attach_instance(SheenAccel *a, const SheenInstance *instance, uint32_t id)
+{
+    RTCGeometry g = rtcNewGeometry(a->device, RTC_GEOMETRY_TYPE_INSTANCE);
+    if (!g) return;
+    float m[12]; // column-major 3 x 4
+    for (int col = 0; col < 4; ++col)
+        for (int row = 0; row < 3; ++row) m[3 * col + row] = (float)instance->to_world.m[row][col];
+    rtcSetGeometryInstancedScene(g, a->groups[instance->group]);
+    rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m);
+    rtcCommitGeometry(g);
+    attach(a->world, g, id);
+}
+
+SheenStatus sheen_accel_create(const SheenScene *scene, SheenPool *pool, const SheenLog *log, SheenAccel **out)
+{
+    *out = NULL;
+    SheenAccel *a = calloc(1, sizeof *a);
+    if (!a) return SHEEN_ERR_NOMEM;
+    char config[64];
+    snprintf(config, sizeof config, "threads=%u,set_affinity=0", sheen_pool_size(pool));
+    a->device = rtcNewDevice(config);
+    a->groups = calloc(scene->n_groups, sizeof(RTCScene));
+    if (!a->device || !a->groups) {
+        sheen_accel_destroy(&a);
+        return sheen_fail(log, SHEEN_ERR_NOMEM, "%s: the ray tracing library does not start", scene->name);
+    }
+    a->n_groups = scene->n_groups;
+    a->n_shapes = scene->n_shapes;
+    for (uint32_t i = 1; i < scene->n_groups; ++i) {
+        a->groups[i] = group_create(a->device, scene, &scene->groups[i]);
+        if (a->groups[i]) rtcCommitScene(a->groups[i]);
+    }
+    a->world = group_create(a->device, scene, &scene->groups[0]);
+    if (a->world) {
+        for (uint32_t i = 0; i < scene->n_instances; ++i) attach_instance(a, &scene->instances[i], scene->n_shapes + i);
+        rtcCommitScene(a->world);
+    }
+    if (rtcGetDeviceError(a->device) != RTC_ERROR_NONE) {
+        sheen_accel_destroy(&a);
+        return sheen_fail(log, SHEEN_ERR_NOMEM, "%s: the acceleration structure cannot be built", scene->name);
+    }
+    *out = a;
+    return SHEEN_OK;
+}
+
+void sheen_accel_destroy(SheenAccel **accel)
+{
+    SheenAccel *a = accel ? *accel : NULL;
+    if (!a) return;
+    if (a->world) rtcReleaseScene(a->world);
+    for (uint32_t i = 0; i < a->n_groups; ++i)
+        if (a->groups[i]) rtcReleaseScene(a->groups[i]);
+    if (a->device) rtcReleaseDevice(a->device);
+    free(a->groups);
+    free(a);
+    *accel = NULL;
+}
+
+static Hit hit_of(const SheenAccel *a, float t, float u, float v, uint32_t geometry, uint32_t primitive,
+                  uint32_t instance)
+{
+    if (geometry == RTC_INVALID_GEOMETRY_ID) return (Hit){.shape = SHEEN_NONE, .instance = SHEEN_NONE};
+    return (Hit){t,        u,         v,
+                 geometry, primitive, instance == RTC_INVALID_GEOMETRY_ID ? SHEEN_NONE : instance - a->n_shapes};
+}
+
+static struct RTCRay single_ray(const Ray *ray)
+{
+    return (struct RTCRay){.org_x = ray->o.x,
+                           .org_y = ray->o.y,
+                           .org_z = ray->o.z,
+                           .dir_x = ray->d.x,
+                           .dir_y = ray->d.y,
+                           .dir_z = ray->d.z,
+                           .tnear = 0.0f,
+                           .tfar = ray->t_max,
+                           .mask = ~0u};
+}
+
+void sheen_accel_intersect(const SheenAccel *a, const Ray *ray, Hit *hit)
+{
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    struct RTCRayHit rh = {.ray = single_ray(ray)};
+    rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(a->world, &context, &rh);
+    *hit = hit_of(a, rh.ray.tfar, rh.hit.u, rh.hit.v, rh.hit.geomID, rh.hit.primID, rh.hit.instID[0]);
+}
+
+bool sheen_accel_occluded(const SheenAccel *a, const Ray *ray)
+{
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    struct RTCRay r = single_ray(ray);
+    rtcOccluded1(a->world, &context, &r);
+    return r.tfar < 0.0f;
+}
+
+enum { PACKET = 16 };
+
+static struct RTCIntersectContext batch_context(SheenCoherence coherence)
+{
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags =
+        coherence == SHEEN_COHERENT ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    return context;
+}
+
+// Fills lane i of a packet; returns the lane's validity mask.
+static int fill_lane(struct RTCRay16 *p, int i, const Ray *r)
+{
+    p->org_x[i] = r->o.x;
+    p->org_y[i] = r->o.y;
+    p->org_z[i] = r->o.z;
+    p->dir_x[i] = r->d.x;
+    p->dir_y[i] = r->d.y;
+    p->dir_z[i] = r->d.z;
+    p->tnear[i] = 0.0f;
+    p->tfar[i] = r->t_max;
+    p->mask[i] = ~0u;
+    p->time[i] = 0.0f;
+    p->flags[i] = 0;
+    p->id[i] = 0;
+    return r->t_max >= 0.0f ? -1 : 0;
+}
+
+// Lanes beyond the last ray repeat it, invalid, so that no lane is uninitialised.
+static int packet_size(size_t n, size_t first)
+{
+    return n - first < PACKET ? (int)(n - first) : PACKET;
+}
+
+void sheen_accel_intersect_many(const SheenAccel *a, SheenCoherence coherence, size_t n, const Ray rays[], Hit hits[])
+{
+    struct RTCIntersectContext context = batch_context(coherence);
+    for (size_t first = 0; first < n; first += PACKET) {
+        int count = packet_size(n, first);
+        _Alignas(64) struct RTCRayHit16 p;
+        _Alignas(64) int valid[PACKET];
+        for (int i = 0; i < PACKET; ++i) {
+            bool used = i < count;
+            valid[i] = fill_lane(&p.ray, i, &rays[first + (size_t)(used ? i : count - 1)]);
+            if (!used) valid[i] = 0;
+            p.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+            p.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+        }
+        rtcIntersect16(valid, a->world, &context, &p);
+        for (int i = 0; i < count; ++i)
+            hits[first + (size_t)i] =
+                hit_of(a, p.ray.tfar[i], p.hit.u[i], p.hit.v[i], p.hit.geomID[i], p.hit.primID[i], p.hit.instID[0][i]);
+    }
+}
+
+void sheen_accel_occluded_many(const SheenAccel *a, SheenCoherence coherence, size_t n, const Ray rays[],
+                               unsigned char occluded[])
+{
+    struct RTCIntersectContext context = batch_context(coherence);
+    for (size_t first = 0; first < n; first += PACKET) {
+        int count = packet_size(n, first);
+        _Alignas(64) struct RTCRay16 p;
+        _Alignas(64) int valid[PACKET];
+        for (int i = 0; i < PACKET; ++i) {
+            bool used = i < count;
+            valid[i] = fill_lane(&p, i, &rays[first + (size_t)(used ? i : count - 1)]);
+            if (!used) valid[i] = 0;
+        }
+        rtcOccluded16(valid, a->world, &context, &p);
+        // Embree marks an occluded ray by tfar = -inf; a skipped one has had a negative tfar from the start.
+        for (int i = 0; i < count; ++i) occluded[first + (size_t)i] = p.tfar[i] < 0.0f;
+    }
+}
