@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/texture.h"
+
+#include <stddef.h>
+
+SheenTexture sheen_texture_constant(Rgb value)
+{
+    return (SheenTexture){.kind = SHEEN_TEXTURE_CONSTANT, .value = value, .uv = {{1, 0, 0}, {0, 1, 0}}};
+}
+
+static Rgb texel(const SheenBitmap *b, uint32_t x, uint32_t y)
+{
+    size_t i = (size_t)y * b->width + x;
+    if (b->floats) return b->floats[i];
+    const uint8_t *c = b->bytes + 3 * i;
+    return rgb(b->decode[c[0]], b->decode[c[1]], b->decode[c[2]]);
+}
+
+/** Folds a coordinate into [0, 1] (a period at most), so that any finite value fits an integer after scaling. */
+static float fold(float t, SheenWrap wrap)
+{
+    if (!isfinite(t)) return 0.0f;
+    switch (wrap) {
+    case SHEEN_WRAP_REPEAT:
+        return t - floorf(t);
+    case SHEEN_WRAP_MIRROR:
+        t = fabsf(t - 2.0f * floorf(0.5f * t + 0.5f)); // triangle wave of period 2: 0 at even, 1 at odd integers
+        return minf(t, 1.0f);
+    case SHEEN_WRAP_CLAMP:
+        break;
+    }
+    return clampf(t, 0.0f, 1.0f);
+}
+
+/** Index of a texel in [-1, size], one step outside at most: wraps around or stays at the border. */
+static uint32_t wrap_index(int64_t i, uint32_t size, SheenWrap wrap)
+{
+    if (i >= 0 && i < (int64_t)size) return (uint32_t)i;
+    bool low = i < 0;
+    if (wrap == SHEEN_WRAP_REPEAT) return low ? size - 1 : 0;
+    return low ? 0 : size - 1; // mirroring repeats the border texel
+}
+
+static Rgb eval_bitmap(const SheenTexture *t, float u, float v)
+{
+    const SheenBitmap *b = &t->bitmap;
+    // Rows run downward, v upward.
+    float x = fold(u, t->wrap) * (float)b->width;
+    float y = (1.0f - fold(v, t->wrap)) * (float)b->height;
+    if (t->nearest) {
+        // v on a texel border belongs to the texel above it, hence the ceiling.
+        return texel(b, wrap_index((int64_t)floorf(x), b->width, t->wrap),
+                     wrap_index((int64_t)ceilf(y) - 1, b->height, t->wrap));
+    }
+    x -= 0.5f, y -= 0.5f;
+    float fx = floorf(x), fy = floorf(y), ax = x - fx, ay = y - fy;
+    uint32_t x0 = wrap_index((int64_t)fx, b->width, t->wrap), x1 = wrap_index((int64_t)fx + 1, b->width, t->wrap);
+    uint32_t y0 = wrap_index((int64_t)fy, b->height, t->wrap), y1 = wrap_index((int64_t)fy + 1, b->height, t->wrap);
+    Rgb sum = rgb_scale(texel(b, x0, y0), (1.0f - ax) * (1.0f - ay));
+    sum = rgb_mad(sum, ax * (1.0f - ay), texel(b, x1, y0));
+    sum = rgb_mad(sum, (1.0f - ax) * ay, texel(b, x0, y1));
+    return rgb_mad(sum, ax * ay, texel(b, x1, y1));
+}
+
+Rgb sheen_texture_eval(const SheenTexture *t, Vec2 uv)
+{
+    if (t->kind == SHEEN_TEXTURE_CONSTANT) return t->value;
+    float u = t->uv[0][0] * uv.x + t->uv[0][1] * uv.y + t->uv[0][2];
+    float v = t->uv[1][0] * uv.x + t->uv[1][1] * uv.y + t->uv[1][2];
+    if (t->kind == SHEEN_TEXTURE_BITMAP) return eval_bitmap(t, u, v);
+    // Two by two fields in the unit square; the first colour where both halves are the same.
+    bool right = fold(u, SHEEN_WRAP_REPEAT) > 0.5f, top = fold(v, SHEEN_WRAP_REPEAT) > 0.5f;
+    return right == top ? t->value : t->value2;
+}
+
+static Rgb mean_of_bitmap(const SheenBitmap *b)
+{
+    double sum[3] = {0.0, 0.0, 0.0};
+    for (uint32_t y = 0; y < b->height; ++y)
+        for (uint32_t x = 0; x < b->width; ++x) {
+            Rgb c = texel(b, x, y);
+            sum[0] += (double)c.r, sum[1] += (double)c.g, sum[2] += (double)c.b;
+        }
+    double n = (double)b->width * (double)b->height;
+    if (!(n > 0.0)) return rgb_gray(0.0f);
+    return rgb((float)(sum[0] / n), (float)(sum[1] / n), (float)(sum[2] / n));
+}
+
+Rgb sheen_texture_mean(const SheenTexture *t)
+{
+    switch (t->kind) {
+    case SHEEN_TEXTURE_CONSTANT:
+        return t->value;
+    case SHEEN_TEXTURE_BITMAP:
+        return mean_of_bitmap(&t->bitmap);
+    case SHEEN_TEXTURE_CHECKERBOARD:
+        break;
+    }
+    return rgb_scale(rgb_add(t->value, t->value2), 0.5f);
+}
