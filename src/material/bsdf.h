@@ -44,7 +44,10 @@ bool sheen_bsdf_sample(const Bsdf *bsdf, Vec3 wo_l, float lobe, Vec2 u, BsdfSamp
  */
 int sheen_bsdf_delta_lobes(const Bsdf *bsdf, Vec3 wo_l, BsdfSample out[2]);
 
-/** @return the hemispherical-directional reflectance for wo (transmission included), each channel in [0, 1]. */
+/**
+ * @return the share of the energy that wo's direction scatters into all others, transmission included, each channel in
+ *         [0, 1]; without the factor 1/eta^2 that refraction puts on radiance
+ */
 Rgb sheen_bsdf_albedo(const Bsdf *bsdf, Vec3 wo_l);
 
 /** Reflectance of a smooth dielectric. eta: interior over exterior; cos_i > 0 from outside, < 0 from inside.
@@ -53,11 +56,5 @@ float sheen_fresnel_dielectric(float cos_i, float eta, float *cos_t);
 
 /** Reflectance of a smooth conductor of relative index eta + i k, for cos_i in [0, 1], one channel. */
 float sheen_fresnel_conductor(float cos_i, float eta, float k);
-
-/**
- * Named metals as Mitsuba spells them ("Au", "Cu", "Al", ...); "none" is a perfect mirror (eta 0, k 1).
- * @return false for an unknown name
- */
-bool sheen_metal_find(const char *name, Rgb *eta, Rgb *k);
 
 #endif
