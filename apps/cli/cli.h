@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the commands of the program share: each is one file that defines one Command. The table of its options is the
+// only place that knows them: parser, --help and man page are all made from it.
+#ifndef SHEEN_CLI_CLI_H
+#define SHEEN_CLI_CLI_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/** Exit codes of the program. */
+enum { CLI_DONE = 0, CLI_WORLD = 1, CLI_USAGE = 2, CLI_INTERRUPTED = 130 };
+
+/** How an option's argument is read, and the type of the field that it fills. */
+typedef enum OptionKind {
+    OPTION_FLAG,   // no argument; bool becomes true
+    OPTION_COUNT,  // whole number in [min, max]; uint32_t
+    OPTION_NUMBER, // decimal number in [min, max]; double
+    OPTION_CHOICE, // one of `choices`; int becomes its value
+    OPTION_SET,    // names of `choices` with commas between; unsigned gains the bits 1 << value
+    OPTION_SIZE,   // WxH, each side in [min, max]; PictureSize
+    OPTION_TEXT,   // any words but none; const char *
+    OPTION_TEXTS,  // the same, may be given several times; TextList
+    OPTION_LATER,  // known, but not in this version: refused, and not in the help
+} OptionKind;
+
+/** A named value. A choice that this version does not have is refused, and not in the help. */
+typedef struct Choice {
+    const char *name; // NULL ends a list
+    int value;
+} Choice;
+enum { CHOICE_LATER = -1 };
+
+typedef struct PictureSize {
+    uint32_t width, height;
+} PictureSize;
+
+enum { TEXT_LIST_MAX = 32 };
+typedef struct TextList {
+    const char *items[TEXT_LIST_MAX];
+    size_t n;
+} TextList;
+
+/** One option of a command. */
+typedef struct Option {
+    OptionKind kind;
+    char letter;          // of the short form, 0 for none
+    const char *name;     // of the long form without the dashes; NULL ends a table
+    const char *argument; // how help names the argument; NULL for flags
+    const char *meaning;  // sentences
+    const char *standard; // what holds without the option; NULL for flags
+    const char *example;  // as a user would type it
+    size_t offset;        // of the field in the command's structure of values
+    double min, max;
+    const Choice *choices;
+    bool recorded; // the picture depends on it: it goes into statistics and EXR files
+} Option;
+
+/** A command: `sheen NAME`. */
+typedef struct Command {
+    const char *name;
+    const char *operands;    // how help names them: "SCENE"
+    const char *summary;     // one line, lower case, no stop
+    const char *description; // paragraphs for help and man page, "\n" between them
+    const Option *options;
+    const char *example; // a whole command line
+    /** @param argv  argv[0] is the command's name; argv[argc] is NULL. @return the exit code */
+    int (*run)(int argc, char **argv);
+} Command;
+
+extern const Command command_render, command_compare, command_info, command_help;
+
+/** All commands in the order of the help; NULL ends the list. */
+extern const Command *const cli_commands[];
+
+/** @return the command of that name or NULL. */
+const Command *cli_find_command(const char *name);
+
+/**
+ * Reads the words of a command line into a structure of values that holds the defaults. Options and operands may stand
+ * in any order; `--name=value`, `-xvalue` and `--` work; of an option given twice the last counts.
+ * @param argc, argv  as a command gets them; on return argv[1..*argc - 1] are the operands
+ * @return true to go on; false when *exit_code says how to end: help was asked for and printed, or one line on stderr
+ *         names the option that is wrong
+ */
+bool cli_parse(const Command *command, int *argc, char **argv, void *values, int *exit_code);
+
+/** Prints `sheen: MESSAGE; try 'sheen COMMAND --help'` on stderr. @param command  may be NULL. @return CLI_USAGE */
+int cli_usage_error(const Command *command, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/** Prints `sheen: MESSAGE` on stderr. @return CLI_WORLD */
+int cli_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/** Flushes stdout. @return CLI_DONE, or CLI_WORLD and a message when what was printed did not arrive. */
+int cli_finish_stdout(void);
+
+/** Prints what `sheen COMMAND --help` says, or the overview for NULL. */
+void cli_print_help(FILE *out, const Command *command);
+
+/** Prints the man page, in the macros of man(7), of a command, or of the program for NULL. */
+void cli_print_man(FILE *out, const Command *command);
+
+#endif
