@@ -10,7 +10,22 @@
 /** What sampling needs of the scene's lights: bounds, area and image distributions. Immutable, thread-safe. */
 typedef struct SheenLights SheenLights;
 
-SHEEN_NODISCARD SheenStatus sheen_lights_create(const SheenScene *scene, const SheenLog *log, SheenLights **out);
+/** Which part of an environment the light sampling answers for. */
+typedef enum SheenEnvironmentSplit {
+    SHEEN_ENVIRONMENT_WHOLE, // all of it
+    SHEEN_ENVIRONMENT_HARD,  // only what is brighter than sheen_environment_soft: sun and lamps. The caller gathers the
+                             // soft rest with rays of its own
+} SheenEnvironmentSplit;
+
+/**
+ * @param scene  borrowed; must outlive the result
+ * @param out    owned by the caller; NULL on failure
+ * Errors: SHEEN_ERR_NOMEM.
+ */
+SHEEN_NODISCARD SheenStatus sheen_lights_create(const SheenScene *scene, SheenEnvironmentSplit split,
+                                                const SheenLog *log, SheenLights **out);
+
+/** Frees the lights and sets *lights to NULL. NULL-safe. */
 void sheen_lights_destroy(SheenLights **lights);
 
 /** One sample of the light that arrives at a point from one light. */
@@ -61,6 +76,13 @@ Rgb sheen_emitted(const SheenScene *scene, const SurfacePoint *s, Vec3 wo);
 
 /** @return radiance that arrives along wi (unit, pointing out of the scene) from the environment. W m^-2 sr^-1. */
 Rgb sheen_environment(const SheenScene *scene, Vec3 wi);
+
+/**
+ * @return the part of sheen_environment(scene, wi) that the samples of the environment light leave out: the radiance
+ *         scaled so that its luminance is at most a small multiple of the environment's mean with
+ *         SHEEN_ENVIRONMENT_HARD (all of it when nothing is brighter); zero with SHEEN_ENVIRONMENT_WHOLE
+ */
+Rgb sheen_environment_soft(const SheenLights *lights, Vec3 wi);
 
 /** A shadow ray from `s` to a light sample, starting and ending off the surfaces. */
 Ray sheen_shadow_ray(const SurfacePoint *s, const LightSample *sample);

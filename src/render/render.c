@@ -30,11 +30,14 @@ SheenStatus sheen_render(const SheenScene *scene, const SheenRenderSettings *set
                           "%s: a picture of %u x %u pixels is out of range (1 x 1 to %d a side, %llu in all)",
                           scene->name, width, height, SHEEN_IMAGE_MAX_SIDE, (unsigned long long)SHEEN_IMAGE_MAX_PIXELS);
 
+    // The cached integrator finds what is soft of an environment with the rays of its gathers.
+    SheenEnvironmentSplit split =
+        settings->integrator == SHEEN_INTEGRATOR_IRRADIANCE ? SHEEN_ENVIRONMENT_HARD : SHEEN_ENVIRONMENT_WHOLE;
     SheenLights *lights = NULL;
     SheenAccel *accel = NULL;
     progress_report(progress, "build", 0.0, 0);
     SheenStatus status = sheen_film_create(width, height, settings->aovs, film);
-    if (status == SHEEN_OK) status = sheen_lights_create(scene, log, &lights);
+    if (status == SHEEN_OK) status = sheen_lights_create(scene, split, log, &lights);
     if (status == SHEEN_OK) status = sheen_accel_create(scene, pool, log, &accel);
     times->build = sheen_clock_seconds() - start;
     if (status == SHEEN_OK) {

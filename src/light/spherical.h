@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sampling flat shapes uniformly over the solid angle that they fill. In double: solid angles are differences of large
+// angles, and light sources are small.
+#ifndef SHEEN_LIGHT_SPHERICAL_H
+#define SHEEN_LIGHT_SPHERICAL_H
+
+#include "math/vec.h"
+
+/** A vector in double, for this folder's geometry. */
+typedef struct D3 {
+    double x, y, z;
+} D3;
+
+static inline D3 d3(double x, double y, double z)
+{
+    return (D3){x, y, z};
+}
+static inline D3 d3_sub(Vec3 a, Vec3 b)
+{
+    return d3((double)a.x - (double)b.x, (double)a.y - (double)b.y, (double)a.z - (double)b.z);
+}
+static inline D3 d3_scale(D3 a, double s)
+{
+    return d3(a.x * s, a.y * s, a.z * s);
+}
+/** a + s b */
+static inline D3 d3_mad(D3 a, double s, D3 b)
+{
+    return d3(a.x + s * b.x, a.y + s * b.y, a.z + s * b.z);
+}
+static inline double d3_dot(D3 a, D3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+static inline D3 d3_cross(D3 a, D3 b)
+{
+    return d3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+}
+static inline double d3_length(D3 a)
+{
+    return sqrt(d3_dot(a, a));
+}
+
+/** Points corner + s ex + t ey, s and t in [0, 1], seen from the side of n. */
+typedef struct SheenRectangle {
+    Vec3 corner, ex, ey;
+    Vec3 n;        // unit, ex x ey normalized
+    D3 x, y, z;    // unit axes: ex, ey, n
+    double lx, ly; // lengths of the edges
+} SheenRectangle;
+
+/** ex and ey are perpendicular and not zero. */
+SheenRectangle sheen_rectangle_make(Vec3 corner, Vec3 ex, Vec3 ey);
+
+/**
+ * A point of the rectangle, uniform over the solid angle seen from p; over the area where that is too small to tell.
+ * @param st   coordinates of the point on the rectangle, [0, 1]^2
+ * @param pdf  density with respect to solid angle, 1/sr
+ * @return false when p is not in front of the rectangle
+ * Source: urena2013-spherical-rectangle, sec. 4.
+ */
+bool sheen_rectangle_sample(const SheenRectangle *r, Vec3 p, Vec2 u, Vec2 *st, float *pdf);
+
+/** @return the density, 1/sr, with which sheen_rectangle_sample draws the direction from p to q on the rectangle. */
+float sheen_rectangle_pdf(const SheenRectangle *r, Vec3 p, Vec3 q);
+
+/**
+ * A point of a triangle, seen from its front, where the vertices run counter-clockwise; uniform over its solid angle,
+ * or over its area where the solid angle is too small or too close to the half-space.
+ * @param b  barycentric coordinates of vertices 1 and 2
+ * Source: arvo1995-spherical-triangle.
+ */
+bool sheen_triangle_sample(const Vec3 v[3], Vec3 p, Vec2 u, Vec2 *b, float *pdf);
+
+/** @return the density, 1/sr, with which sheen_triangle_sample draws the direction from p to q on the triangle. */
+float sheen_triangle_pdf(const Vec3 v[3], Vec3 p, Vec3 q);
+
+#endif
