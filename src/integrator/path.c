@@ -46,7 +46,7 @@ static void draw_from(Path *path, uint32_t dim)
 }
 
 // Weight of a sample of density a where another technique would have drawn it with density b: a^2 / (a^2 + b^2), in a
-// form that does not overflow. Source: veach1997 sec. 9.2.
+// form that does not overflow. Source: veach1997 ch. 9.
 static float power_heuristic(float a, float b)
 {
     float ratio = b / a;

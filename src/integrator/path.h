@@ -28,7 +28,7 @@ typedef struct PathRadiance {
  * @param sampler  the sample; its `dim` is ignored, see SHEEN_PATH_FIRST_DIM
  * @param stats    rays are counted here; not shared between threads
  * @return an estimate whose mean is the radiance; may be non-finite where the scene's numbers overflow
- * Source: veach1997 sec. 9.2 (power heuristic), sec. 10.4 (Russian roulette). Pure but for *stats, thread-safe.
+ * Source: veach1997 ch. 9 (power heuristic); arvo1990 (Russian roulette). Pure but for *stats, thread-safe.
  */
 PathRadiance sheen_path_trace(const SheenWork *work, const Ray *ray, const Hit *hit, SheenSampler sampler,
                               SheenStats *stats);

@@ -110,7 +110,7 @@ static void test_constant_environment(void **state)
     plane_expect(&p, 2.0 * (double)SHEEN_PI, 1, "environment");
 }
 
-// A disk of radius r parallel to the plane at height h, its axis a from the point. Source: howell2010 B-12.
+// A disk of radius r parallel to the plane at height h, its axis a from the point. Source: howell2010.
 static double disk_irradiance(double L, double r, double h, double a)
 {
     double H = h / a, R = r / a, Z = 1.0 + H * H + R * R;
@@ -134,7 +134,7 @@ static void test_disk_light(void **state)
     plane_expect(&p, 0.0, 1, "disk light from behind");
 }
 
-// A rectangle a x b parallel to the plane at height h, one corner above the point. Source: howell2010 B-3.
+// A rectangle a x b parallel to the plane at height h, one corner above the point. Source: howell2010.
 static double corner_factor(double a, double b, double h)
 {
     double A = a / h, B = b / h, u = sqrt(1.0 + A * A), v = sqrt(1.0 + B * B);
