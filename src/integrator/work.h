@@ -76,9 +76,10 @@ Ray sheen_camera_ray(const SheenCamera *camera, uint32_t width, uint32_t height,
  * - A direction on different sides of a surface's geometric and of its shading normal carries nothing.
  *
  * sheen_path_render is the reference: path tracing with light samples and BSDF samples weighed by the power heuristic,
- * box filter. With options.time_limit it makes passes until the next would end too late, whatever options.spp says, at
- * least one. The picture is a function of scene, size, seed and stats->spp_done alone: not of threads and passes.
- * Non-finite samples are counted and add nothing. Layers of the cache stay zero.
+ * box filter; options.light_samples where a path first scatters, one at later vertices. With options.time_limit it
+ * makes passes until the next would end too late, whatever options.spp says, at least one. The picture is a function of
+ * scene, size, seed and stats->spp_done alone: not of threads and passes. Non-finite samples are counted and add
+ * nothing. Layers of the cache stay zero.
  */
 SHEEN_NODISCARD SheenStatus sheen_path_render(const SheenWork *work, SheenFilm *film, SheenStats *stats);
 SHEEN_NODISCARD SheenStatus sheen_irradiance_render(const SheenWork *work, SheenFilm *film, SheenStats *stats);
