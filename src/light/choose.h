@@ -1,19 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// Estimates of how much each light contributes at a point, cheap enough for every shading point.
+// The choice of one light among all, in proportion to estimates.
 #ifndef SHEEN_LIGHT_CHOOSE_H
 #define SHEEN_LIGHT_CHOOSE_H
 
-#include "light/source.h"
+#include "light/estimate.h"
 
-/** The lights as structures of arrays, in the order of the sources. */
-typedef struct ChooseTable ChooseTable;
+/** More lights than this are refused. */
+#define CHOOSE_MAX (1u << 20)
 
-/** @param sources  [n] in the order of their kinds; borrowed */
-SHEEN_NODISCARD SheenStatus sheen_choose_table_init(const Source sources[], uint32_t n, SheenArena *arena,
-                                                    ChooseTable **out);
+typedef struct Chooser {
+    EstimateTable table;
+    uint32_t n;
+    // Many lights are chosen in two steps, a group of neighbours first. Groups are runs of `group_size` sources.
+    uint32_t n_groups, group_size; // none for few lights
+    Bodies groups;
+    float *infinite; // [n_groups] what lights without a place add to a group's estimate
+} Chooser;
+
+/** @param sources  [n], n <= CHOOSE_MAX, in the order of their kinds, neighbours together; borrowed
+ *  @return false when out of memory */
+bool sheen_chooser_init(const Source sources[], uint32_t n, SheenArena *arena, Chooser *out);
 
 /** As sheen_lights_choose and sheen_lights_choose_probability. */
-float sheen_choose_table_pick(const ChooseTable *t, Vec3 p, Vec3 n, float *u, uint32_t *light);
-float sheen_choose_table_probability(const ChooseTable *t, Vec3 p, Vec3 n, uint32_t light);
+float sheen_chooser_pick(const Chooser *c, Vec3 p, Vec3 n, float *u, uint32_t *light);
+float sheen_chooser_probability(const Chooser *c, Vec3 p, Vec3 n, uint32_t light);
 
 #endif

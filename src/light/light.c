@@ -10,7 +10,7 @@ struct SheenLights {
     SheenArena *arena; // owns the arrays below
     uint32_t n;
     Source *sources; // [n], in the order of their kinds
-    ChooseTable *choose;
+    Chooser chooser;
     const SheenShape *shapes;
     uint32_t *of_light;                  // [scene->n_lights] index into sources, or SHEEN_NONE
     uint32_t environment;                // index into sources, or SHEEN_NONE
@@ -29,22 +29,58 @@ static bool can_contribute(const Source *s)
     return true;
 }
 
-// Sources of one kind stand together, in the order of the scene: one pass for each kind.
-static SheenStatus gather_sources(const SheenScene *scene, SheenEnvironmentSplit split, Source *all, SheenLights *l)
+// Where a source stands: by kind, then along a curve that keeps neighbours together, then as in the scene.
+typedef struct Order {
+    uint32_t kind, code, index;
+} Order;
+
+static int compare_orders(const void *a, const void *b)
 {
+    const Order *x = a, *y = b;
+    if (x->kind != y->kind) return x->kind < y->kind ? -1 : 1;
+    if (x->code != y->code) return x->code < y->code ? -1 : 1;
+    return x->index < y->index ? -1 : 1;
+}
+
+static uint32_t spread_bits(float x) // 10 bits of [0, 1], two zeros after each
+{
+    uint32_t b = (uint32_t)(clampf(x, 0.0f, 1.0f) * 1023.0f);
+    b = (b | b << 16) & 0x030000ffu;
+    b = (b | b << 8) & 0x0300f00fu;
+    b = (b | b << 4) & 0x030c30c3u;
+    return (b | b << 2) & 0x09249249u;
+}
+
+// Place along the Morton curve within the box of all lights.
+static uint32_t morton_code(const Bounds *box, Vec3 p)
+{
+    Vec3 size = v3_max(v3_sub(box->hi, box->lo), v3(1e-20f, 1e-20f, 1e-20f)), d = v3_sub(p, box->lo);
+    return spread_bits(d.x / size.x) << 2 | spread_bits(d.y / size.y) << 1 | spread_bits(d.z / size.z);
+}
+
+static SheenStatus gather_sources(const SheenScene *scene, SheenEnvironmentSplit split, Source *all, Order *order,
+                                  SheenLights *l)
+{
+    Bounds box = bounds_empty();
     for (uint32_t i = 0; i < scene->n_lights; ++i) {
+        l->of_light[i] = SHEEN_NONE;
         SheenStatus status = sheen_source_init(scene, &scene->lights[i], split, l->arena, &all[i]);
         if (status) return status;
         if (i == scene->environment) l->soft_limit = all[i].environment.threshold;
-        l->of_light[i] = SHEEN_NONE;
+        if (!can_contribute(&all[i])) continue;
+        if (!isinf(all[i].radius)) box = bounds_add(box, all[i].center);
+        order[l->n++].index = i;
     }
-    for (int kind = 0; kind < SOURCE_KINDS; ++kind) {
-        for (uint32_t i = 0; i < scene->n_lights; ++i) {
-            if ((int)all[i].kind != kind || !can_contribute(&all[i])) continue;
-            if (kind == SOURCE_ENVIRONMENT) l->environment = l->n;
-            l->of_light[i] = l->n;
-            l->sources[l->n++] = all[i];
-        }
+    for (uint32_t k = 0; k < l->n; ++k) {
+        const Source *s = &all[order[k].index];
+        order[k].kind = (uint32_t)s->kind;
+        order[k].code = isinf(s->radius) ? 0 : morton_code(&box, s->center);
+    }
+    qsort(order, l->n, sizeof *order, compare_orders);
+    for (uint32_t k = 0; k < l->n; ++k) {
+        l->sources[k] = all[order[k].index];
+        l->of_light[order[k].index] = k;
+        if (l->sources[k].kind == SOURCE_ENVIRONMENT) l->environment = k;
     }
     return SHEEN_OK;
 }
@@ -58,17 +94,23 @@ static SheenStatus build(const SheenScene *scene, SheenEnvironmentSplit split, S
     if (scene->environment != SHEEN_NONE) l->environment_light = &scene->lights[scene->environment];
     l->sources = SHEEN_ARENA_NEW(l->arena, Source, scene->n_lights);
     l->of_light = SHEEN_ARENA_NEW(l->arena, uint32_t, scene->n_lights);
-    Source *all = calloc(scene->n_lights ? scene->n_lights : 1, sizeof *all);
+    Source *all = calloc((size_t)scene->n_lights + 1, sizeof *all);
+    Order *order = calloc((size_t)scene->n_lights + 1, sizeof *order);
     SheenStatus status = SHEEN_ERR_NOMEM;
-    if (l->sources && l->of_light && all) status = gather_sources(scene, split, all, l);
+    if (l->sources && l->of_light && all && order) status = gather_sources(scene, split, all, order, l);
+    free(order);
     free(all);
-    return status ? status : sheen_choose_table_init(l->sources, l->n, l->arena, &l->choose);
+    if (status) return status;
+    return sheen_chooser_init(l->sources, l->n, l->arena, &l->chooser) ? SHEEN_OK : SHEEN_ERR_NOMEM;
 }
 
 SheenStatus sheen_lights_create(const SheenScene *scene, SheenEnvironmentSplit split, const SheenLog *log,
                                 SheenLights **out)
 {
     *out = NULL;
+    if (scene->n_lights > CHOOSE_MAX)
+        return sheen_fail(log, SHEEN_ERR_UNSUPPORTED, "%s: %u lights, more than %u", scene->name, scene->n_lights,
+                          CHOOSE_MAX);
     SheenLights *l = calloc(1, sizeof *l);
     SheenStatus status = l ? build(scene, split, l) : SHEEN_ERR_NOMEM;
     if (status) {
@@ -107,12 +149,12 @@ uint32_t sheen_lights_environment(const SheenLights *lights)
 
 float sheen_lights_choose(const SheenLights *lights, Vec3 p, Vec3 n, float *u, uint32_t *light)
 {
-    return sheen_choose_table_pick(lights->choose, p, n, u, light);
+    return sheen_chooser_pick(&lights->chooser, p, n, u, light);
 }
 
 float sheen_lights_choose_probability(const SheenLights *lights, Vec3 p, Vec3 n, uint32_t light)
 {
-    return sheen_choose_table_probability(lights->choose, p, n, light);
+    return sheen_chooser_probability(&lights->chooser, p, n, light);
 }
 
 // ---- samples ----------------------------------------------------------------------------------------------------

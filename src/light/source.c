@@ -49,6 +49,36 @@ static bool mesh_is_rectangle(const SheenMesh *mesh, SheenRectangle *out)
     return true;
 }
 
+static Vec3 triangle_normal(const SheenMesh *mesh, uint32_t i)
+{
+    Vec3 v[3];
+    triangle_vertices(mesh, i, v);
+    return v3_normalize(v3_cross(v3_sub(v[1], v[0]), v3_sub(v[2], v[0])));
+}
+
+// The sphere about a mesh and the cone of its normals, widened against rounding.
+static void mesh_bounds(Source *s)
+{
+    const SheenMesh *mesh = &s->shape->mesh;
+    Bounds box = bounds_empty();
+    D3 sum = d3(0, 0, 0); // of normals, by share of the area
+    for (uint32_t i = 0; i < mesh->n_triangles; ++i) {
+        for (int k = 0; k < 3; ++k) box = bounds_add(box, mesh->p[mesh->triangles[i][k]]);
+        double share = s->triangle_cdf[i + 1] - s->triangle_cdf[i];
+        sum = d3_mad(sum, share, d3_sub(triangle_normal(mesh, i), v3(0, 0, 0)));
+    }
+    s->center = bounds_center(&box);
+    s->radius = bounds_radius(&box) * 1.0001f;
+    s->axis = v3_normalize(v3((float)sum.x, (float)sum.y, (float)sum.z));
+    float flat = minf((float)d3_length(sum), 1.0f); // 1 for a flat mesh, 0 for a closed one
+    s->cos_cone = flat > 1e-3f ? 1.0f : -1.0f;
+    for (uint32_t i = 0; i < mesh->n_triangles; ++i)
+        s->cos_cone = minf(s->cos_cone, v3_dot(s->axis, triangle_normal(mesh, i)));
+    s->cos_cone = maxf(s->cos_cone - 1e-4f, -1.0f);
+    // From its axis a flat light shows all its area, a convex closed one from anywhere a quarter on average.
+    s->power = rgb_mean(s->light->radiance) * (float)s->area * lerpf(0.25f, 1.0f, flat);
+}
+
 static SheenStatus mesh_init(Source *s, SheenArena *arena)
 {
     const SheenMesh *mesh = &s->shape->mesh;
@@ -66,6 +96,7 @@ static SheenStatus mesh_init(Source *s, SheenArena *arena)
         for (uint32_t i = 1; i <= mesh->n_triangles; ++i) cdf[i] /= s->area;
     s->kind = mesh->n_triangles == 1 ? SOURCE_TRIANGLE : SOURCE_MESH;
     if (mesh_is_rectangle(mesh, &s->rectangle)) s->kind = SOURCE_RECTANGLE;
+    mesh_bounds(s);
     return SHEEN_OK;
 }
 
@@ -130,12 +161,14 @@ static void disk_init(Source *s)
     Vec3 t = v3_normalize(disk->du), b = v3_cross(disk->n, t);
     float a = v3_length(disk->du), c = v3_dot(disk->dv, t), d = v3_dot(disk->dv, b);
     s->kind = SOURCE_DISK;
+    s->center = disk->center;
     s->area = (double)SHEEN_PI * (double)a * (double)fabsf(d);
     if (!(s->area > 0.0)) return;
     float hx = sqrtf(a * a + c * c), hy = fabsf(d);
     Vec3 corner = v3_mad(v3_mad(disk->center, -hx, t), -hy, b);
     s->rectangle = sheen_rectangle_make(corner, v3_scale(t, 2.0f * hx), v3_scale(b, 2.0f * hy));
-    s->rectangle.n = disk->n;
+    s->radius = sqrtf(hx * hx + hy * hy);
+    s->power = rgb_mean(s->light->radiance) * (float)s->area;
     s->unit_x = 1.0f / a;
     s->unit_y = 1.0f / d;
     s->skew = c / d;
@@ -201,35 +234,56 @@ static float sphere_pdf(const Source *s, Vec3 p)
     return sphere->flip ? 0.25f * SHEEN_INV_PI : 0.5f * SHEEN_INV_PI / cone_height(r2 / d2, &cos_max);
 }
 
+static void sphere_init(Source *s)
+{
+    const SheenSphere *sphere = &s->shape->sphere;
+    s->kind = SOURCE_SPHERE;
+    s->center = sphere->center;
+    s->radius = sphere->radius;
+    s->area = 4.0 * (double)SHEEN_PI * (double)sqrf(sphere->radius);
+    s->power = rgb_mean(s->light->radiance) * 0.25f * (float)s->area;
+}
+
 // ---- all --------------------------------------------------------------------------------------------------------
+
+static SheenStatus area_init(const SheenScene *scene, SheenArena *arena, Source *s)
+{
+    s->shape = &scene->shapes[s->light->shape];
+    switch (s->shape->kind) {
+    case SHEEN_SHAPE_MESH:
+        return mesh_init(s, arena);
+    case SHEEN_SHAPE_SPHERE:
+        sphere_init(s);
+        break;
+    case SHEEN_SHAPE_DISK:
+        disk_init(s);
+        break;
+    }
+    return SHEEN_OK;
+}
 
 SheenStatus sheen_source_init(const SheenScene *scene, const SheenLight *light, SheenEnvironmentSplit split,
                               SheenArena *arena, Source *out)
 {
-    *out = (Source){.light = light};
+    *out = (Source){.light = light, .power = rgb_mean(light->radiance)};
     switch (light->kind) {
     case SHEEN_LIGHT_AREA:
-        out->shape = &scene->shapes[light->shape];
-        if (out->shape->kind == SHEEN_SHAPE_MESH) return mesh_init(out, arena);
-        if (out->shape->kind == SHEEN_SHAPE_DISK) {
-            disk_init(out);
-        } else {
-            out->kind = SOURCE_SPHERE;
-            out->area = 4.0 * (double)SHEEN_PI * (double)sqrf(out->shape->sphere.radius);
-        }
-        break;
+        return area_init(scene, arena, out);
     case SHEEN_LIGHT_POINT:
-        out->kind = SOURCE_POINT;
-        break;
     case SHEEN_LIGHT_SPOT:
-        out->kind = SOURCE_SPOT;
+        out->kind = light->kind == SHEEN_LIGHT_POINT ? SOURCE_POINT : SOURCE_SPOT;
+        out->center = light->position;
         break;
     case SHEEN_LIGHT_DIRECTIONAL:
         out->kind = SOURCE_DIRECTIONAL;
+        out->radius = INFINITY;
         break;
     case SHEEN_LIGHT_ENVIRONMENT:
         out->kind = SOURCE_ENVIRONMENT;
-        return sheen_environment_sampler_init(light, split, arena, &out->environment);
+        out->radius = INFINITY;
+        SheenStatus status = sheen_environment_sampler_init(light, split, arena, &out->environment);
+        out->power = out->environment.flux;
+        return status;
     }
     return SHEEN_OK;
 }

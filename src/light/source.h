@@ -24,12 +24,18 @@ typedef enum SourceKind {
 typedef struct Source {
     SourceKind kind;
     const SheenLight *light;
-    const SheenShape *shape;    // area lights
-    SheenRectangle rectangle;   // rectangle; the disk's bounding rectangle
-    double area;                // area lights, m^2
-    double *triangle_cdf;       // mesh: [n_triangles + 1], from 0 to 1
+    const SheenShape *shape;  // area lights
+    Vec3 center;              // of a sphere that holds the light
+    float radius;             // infinite for a light without a place
+    float power;              // over squared distance, about the irradiance of a surface that faces the light; a light
+                              // without a place: the irradiance, at most
+    double area;              // area lights, m^2
+    SheenRectangle rectangle; // rectangle; the disk's bounding rectangle
     float unit_x, unit_y, skew; // disk: (x, y) metres along its rectangle's axes, from the centre, are the point
                                 // ((x - skew y) unit_x, y unit_y) of the unit disk
+    double *triangle_cdf;       // meshes: [n_triangles + 1], from 0 to 1
+    Vec3 axis;                  // meshes: all normals are within a cone about it
+    float cos_cone;             // cosine of the cone's half-angle
     EnvironmentSampler environment;
 } Source;
 
