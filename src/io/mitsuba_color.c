@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Colours and spectra of Mitsuba scenes as linear sRGB.
-#include "io/file.h"
-#include "io/mitsuba.h"
-#include "io/mesh.h"
-#include "io/number.h"
-#include "io/spectrum.h"
-
 #include "image/image.h"
+#include "image/whole_file.h"
+#include "io/mesh.h"
+#include "io/mitsuba.h"
+#include "io/number.h"
+#include "io/path.h"
+#include "io/spectrum.h"
 
 #include <ctype.h>
 #include <stdlib.h>
@@ -102,19 +102,20 @@ static Rgb sampled_of(Mitsuba *m, const SheenXml *e, const char *text, size_t si
 
 static Rgb spectrum_file(Mitsuba *m, const SheenXml *e, const char *name, MitsubaColor kind)
 {
-    SheenFile file;
+    uint8_t *data;
+    size_t size;
     char *path = sheen_path_beside(m->scratch, e->file, name);
-    if (!path || !m->with_files || !sheen_file_readable(path)) {
+    if (!path || !m->with_files || !sheen_path_readable(path)) {
         sheen_mi_fail(m, SHEEN_ERR_IO, e, "cannot open the spectrum '%s'", name);
         return rgb_gray(0.0f);
     }
-    SheenStatus status = sheen_file_read(path, m->log, &file);
+    SheenStatus status = sheen_file_read(path, m->log, &data, &size);
     if (status) {
         if (!m->status) m->status = status;
         return rgb_gray(0.0f);
     }
-    Rgb c = sampled_of(m, e, file.data, file.size, kind);
-    sheen_file_free(&file);
+    Rgb c = sampled_of(m, e, (const char *)data, size, kind);
+    free(data);
     return c;
 }
 

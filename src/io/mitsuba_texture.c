@@ -85,8 +85,8 @@ static void read_uv_map(Mitsuba *m, const SheenXml *e, SheenTexture *out)
     double scale = sheen_mi_float(m, e, "uvscale", 1.0);
     double su = sheen_mi_float(m, e, "uscale", scale), sv = sheen_mi_float(m, e, "vscale", scale);
     t = transform_mul(transform_scale(su, sv, 1.0), t);
-    t = transform_mul(transform_translate(sheen_mi_float(m, e, "uoffset", 0.0), sheen_mi_float(m, e, "voffset", 0.0), 0),
-                      t);
+    t = transform_mul(
+        transform_translate(sheen_mi_float(m, e, "uoffset", 0.0), sheen_mi_float(m, e, "voffset", 0.0), 0), t);
     const Transform flip = {{{1, 0, 0, 0}, {0, -1, 0, 1}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
     t = transform_mul(transform_mul(flip, t), flip);
     for (int i = 0; i < 2; ++i) {
@@ -158,8 +158,8 @@ static Rgb clamped(Mitsuba *m, const SheenXml *at, Rgb c)
 {
     Rgb r = rgb(clampf(c.r, 0.0f, 1.0f), clampf(c.g, 0.0f, 1.0f), clampf(c.b, 0.0f, 1.0f));
     if (r.r != c.r || r.g != c.g || r.b != c.b)
-        sheen_xml_warn(m->log, at, "the reflectance %g %g %g is outside [0, 1] and is clamped", (double)c.r, (double)c.g,
-                       (double)c.b);
+        sheen_xml_warn(m->log, at, "the reflectance %g %g %g is outside [0, 1] and is clamped", (double)c.r,
+                       (double)c.g, (double)c.b);
     return r;
 }
 

@@ -3,8 +3,8 @@
 #include "io/mitsuba.h"
 
 #include "base/hash.h"
-#include "io/file.h"
 #include "io/number.h"
+#include "io/path.h"
 
 #include <ctype.h>
 #include <stdarg.h>
@@ -38,11 +38,23 @@ const char *sheen_mi_type(const SheenXml *e)
     return type ? type : "";
 }
 
+/** People disable a property by giving its element another tag. */
+static bool is_property(const SheenXml *e)
+{
+    static const char *const tags[] = {"float", "integer", "boolean",   "string",    "point",   "vector", "rgb",
+                                       "srgb",  "color",   "spectrum",  "blackbody", "texture", "ref",    "transform",
+                                       "bsdf",  "emitter", "animation", "medium",    "shape",   "volume", "phase",
+                                       "film",  "sampler", "rfilter",   "sensor"};
+    for (size_t i = 0; i < sizeof tags / sizeof *tags; ++i)
+        if (strcmp(e->tag, tags[i]) == 0) return true;
+    return false;
+}
+
 SheenXml *sheen_mi_child(const SheenXml *e, const char *name)
 {
     for (SheenXml *c = e->first; c; c = c->next) {
         const char *n = sheen_xml_attribute(c, "name");
-        if (n && sheen_mi_same(n, name)) {
+        if (n && sheen_mi_same(n, name) && is_property(c)) {
             c->used = true;
             return c;
         }
@@ -346,9 +358,9 @@ const char *sheen_mi_path(Mitsuba *m, const SheenXml *e, const char *property, c
     }
     // Mitsuba looks beside the scene, people who write includes think beside the include.
     char *path = sheen_path_beside(m->scratch, c->file, name);
-    if (path && m->with_files && sheen_file_readable(path)) return path;
+    if (path && m->with_files && sheen_path_readable(path)) return path;
     char *other = sheen_path_beside(m->scratch, m->root->file, name);
-    if (other && m->with_files && sheen_file_readable(other)) return other;
+    if (other && m->with_files && sheen_path_readable(other)) return other;
     if (!path || !other)
         sheen_mi_fail(m, SHEEN_ERR_NOMEM, c, "out of memory");
     else

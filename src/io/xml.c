@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/xml.h"
 
-#include "io/file.h"
+#include "image/whole_file.h"
+#include "io/path.h"
 
 #include <expat.h>
 #include <limits.h>
@@ -192,7 +193,7 @@ static void include(Source *s, const SheenXml *e, SheenXml *parent)
         stop_out_of_memory(s);
         return;
     }
-    if (!sheen_file_readable(path)) {
+    if (!sheen_path_readable(path)) {
         stop(s, SHEEN_ERR_IO, "cannot open the included file '%s'", path);
         return;
     }
@@ -288,17 +289,18 @@ static SheenStatus read_source(Document *document, const Source *outer, const ch
             free(real_path);
             return SHEEN_ERR_INVALID;
         }
-    SheenFile file;
-    SheenStatus status = sheen_file_read(path, document->log, &file);
+    uint8_t *text;
+    size_t size;
+    SheenStatus status = sheen_file_read(path, document->log, &text, &size);
     if (!status) {
         Source s = {.document = document,
                     .outer = outer,
                     .outer_depth = outer ? outer->outer_depth + outer->depth : 0,
                     .path = sheen_arena_strdup(document->arena, path),
                     .real_path = real_path};
-        status = s.path ? parse(&s, file.data, file.size) : sheen_fail(document->log, SHEEN_ERR_NOMEM, "%s", path);
+        status = s.path ? parse(&s, (const char *)text, size) : sheen_fail(document->log, SHEEN_ERR_NOMEM, "%s", path);
         *root = s.root;
-        sheen_file_free(&file);
+        free(text);
     }
     free(real_path);
     return status;

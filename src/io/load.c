@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/load.h"
+
+#include "io/mitsuba.h"
+#include "io/path.h"
+
+SheenStatus sheen_scene_load(const char *path, const SheenLog *log, SheenScene **out)
+{
+    *out = NULL;
+    if (sheen_path_has_ending(path, ".xml")) return sheen_mitsuba_read(path, log, out);
+    return sheen_fail(log, SHEEN_ERR_UNSUPPORTED, "%s: not a scene file that can be read: the ending must be .xml",
+                      path);
+}
