@@ -177,6 +177,19 @@ static exr_result_t decode_tiles(const ExrPart *part, ExrChunk *chunk, SheenImag
     return result;
 }
 
+/** OpenEXRCore 3.1 cannot decompress DWA, and puts the channels of B44 in the wrong order unless all are half. */
+static SheenStatus check_compression(const ImageSource *source, const exr_attr_chlist_t *list, exr_compression_t kind)
+{
+    const char *what =
+        kind == EXR_COMPRESSION_DWAA || kind == EXR_COMPRESSION_DWAB ? "DWAA and DWAB compression" : NULL;
+    for (int i = 0; i < list->num_channels && (kind == EXR_COMPRESSION_B44 || kind == EXR_COMPRESSION_B44A); ++i) {
+        if (list->entries[i].pixel_type != EXR_PIXEL_HALF) what = "B44 compression of channels that are not half";
+    }
+    if (!what) return SHEEN_OK;
+    return sheen_fail(source->log, SHEEN_ERR_UNSUPPORTED, "%s: %s is not supported; convert the file to ZIP or PIZ",
+                      source->name, what);
+}
+
 /** Reads windows and channels of the first part that is not deep. */
 static SheenStatus read_header(const ImageSource *source, const ExrStream *stream, ExrPart *part)
 {
@@ -189,15 +202,18 @@ static SheenStatus read_header(const ImageSource *source, const ExrStream *strea
     if (!result && part->index == count)
         return sheen_fail(source->log, SHEEN_ERR_UNSUPPORTED, "%s: deep pictures are not supported", source->name);
     const exr_attr_chlist_t *list = NULL;
+    exr_compression_t compression = EXR_COMPRESSION_NONE;
     if (!result) result = exr_get_data_window(part->context, part->index, &part->data);
     if (!result) result = exr_get_display_window(part->context, part->index, &part->display);
     if (!result) result = exr_get_channels(part->context, part->index, &list);
+    if (!result) result = exr_get_compression(part->context, part->index, &compression);
     if (result) return sheen_exr_fail(stream, result, source->name, source->log);
     if (box_width(part->data) <= 0 || box_height(part->data) <= 0 || box_width(part->display) <= 0 ||
         box_height(part->display) <= 0)
         return sheen_fail(source->log, SHEEN_ERR_PARSE, "%s: the picture is empty", source->name);
     SheenStatus status =
         sheen_image_check_size(source, (uint64_t)box_width(part->data), (uint64_t)box_height(part->data));
+    if (!status) status = check_compression(source, list, compression);
     return status ? status : choose_channels(source, list, part);
 }
 

@@ -29,6 +29,7 @@
 typedef struct Feed {
     const ImageSource *source;
     size_t at;
+    const char *ahead; // stb's own small buffer, which it fills first of all and may fill in part at the end
     bool starved;
 } Feed;
 
@@ -37,7 +38,8 @@ static int feed_read(void *user, char *out, int size)
     Feed *feed = user;
     size_t left = feed->source->size - feed->at, n = size > 0 ? (size_t)size : 0;
     if (n > left) n = left;
-    if (n == 0 && size > 0) feed->starved = true;
+    if (!feed->ahead) feed->ahead = out;
+    if (out == feed->ahead ? n == 0 : n < (size_t)size) feed->starved = true;
     memcpy(out, feed->source->data + feed->at, n);
     feed->at += n;
     return (int)n;
