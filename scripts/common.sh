@@ -26,7 +26,7 @@ need_packages() {
         return
     fi
     local missing
-    mapfile -t missing < <(missing_packages "$@")
+    read -r -d '' -a missing <<<"$(missing_packages "$@")" || true
     [ ${#missing[@]} -gt 0 ] || return 0
 
     local as_root=()
