@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/load.h"
 
+#include "io/file_path.h"
 #include "io/mitsuba.h"
-#include "io/path.h"
 
 SheenStatus sheen_scene_load(const char *path, const SheenLog *log, SheenScene **out)
 {

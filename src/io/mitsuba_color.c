@@ -2,10 +2,10 @@
 // Colours and spectra of Mitsuba scenes as linear sRGB.
 #include "image/image.h"
 #include "image/whole_file.h"
+#include "io/file_path.h"
 #include "io/mesh.h"
 #include "io/mitsuba.h"
 #include "io/number.h"
-#include "io/path.h"
 #include "io/spectrum.h"
 
 #include <ctype.h>

@@ -3,8 +3,8 @@
 #include "io/mitsuba.h"
 
 #include "base/hash.h"
+#include "io/file_path.h"
 #include "io/number.h"
-#include "io/path.h"
 
 #include <ctype.h>
 #include <stdarg.h>

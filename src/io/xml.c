@@ -2,7 +2,7 @@
 #include "io/xml.h"
 
 #include "image/whole_file.h"
-#include "io/path.h"
+#include "io/file_path.h"
 
 #include <expat.h>
 #include <limits.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Names of files beside other files.
-#ifndef SHEEN_IO_PATH_H
-#define SHEEN_IO_PATH_H
+#ifndef SHEEN_IO_FILE_PATH_H
+#define SHEEN_IO_FILE_PATH_H
 
 #include "base/arena.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/path.h"
+#include "io/file_path.h"
 
 #include <string.h>
 #include <strings.h>
