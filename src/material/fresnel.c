@@ -9,7 +9,7 @@ float sheen_fresnel_dielectric(float cos_i, float eta, float *cos_t)
     if (eta == 1.0f) return 0.0f;                     // exactly, so that light passes straight through
     float relative = cos_i > 0.0f ? eta : 1.0f / eta; // index beyond over index on the side of the ray
     float c = minf(fabsf(cos_i), 1.0f);
-    float c_t2 = 1.0f - (1.0f - c * c) / (relative * relative);
+    float c_t2 = (relative * relative - 1.0f + c * c) / (relative * relative);
     *cos_t = 0.0f;
     if (!(c_t2 > 0.0f)) return 1.0f; // total reflection; also an index that is no index
     float c_t = sqrtf(c_t2);
