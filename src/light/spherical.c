@@ -6,9 +6,11 @@
 // Rounding leaves about 1e-15 sr in a rectangle's solid angle: below this one the area takes over, whose density is as
 // even there but for points at grazing angles.
 #define RECTANGLE_MIN 1e-8
-// Arvo's formulas divide by differences of the order of the solid angle, and by sines that vanish for a half-space.
-#define TRIANGLE_MIN 1e-4
-#define TRIANGLE_MAX 6.28
+// Arvo's formulas lose their digits with the square of the least angle of the spherical triangle. A triangle that is
+// small from p is left to its area, whose density then varies by a third at most; a near one that is thin, since p is
+// almost in its plane, only where it fills less than this.
+#define TRIANGLE_FAR 0.1 // edge over distance
+#define TRIANGLE_MIN 1e-6
 
 #define TWO_PI 6.283185307179586
 
@@ -128,6 +130,7 @@ typedef struct Corners {
     double la, lb, lc;
     double volume; // a . (b x c): -2 area height for p in front
     double solid_angle;
+    bool by_area;
 } Corners;
 
 static bool corners_from(const Vec3 v[3], Vec3 p, Corners *t)
@@ -144,12 +147,9 @@ static bool corners_from(const Vec3 v[3], Vec3 p, Corners *t)
     double den =
         t->la * t->lb * t->lc + d3_dot(t->a, t->b) * t->lc + d3_dot(t->b, t->c) * t->la + d3_dot(t->c, t->a) * t->lb;
     t->solid_angle = 2.0 * atan2(-t->volume, den);
+    double edge = fmax(d3_length(d3_sub(v[1], v[0])), d3_length(d3_sub(v[2], v[0])));
+    t->by_area = edge < TRIANGLE_FAR * t->la || t->solid_angle < TRIANGLE_MIN;
     return true;
-}
-
-static bool triangle_by_solid_angle(const Corners *t)
-{
-    return t->solid_angle > TRIANGLE_MIN && t->solid_angle < TRIANGLE_MAX;
 }
 
 static D3 normalized_rejection(D3 v, D3 axis)
@@ -176,7 +176,7 @@ bool sheen_triangle_sample(const Vec3 v[3], Vec3 p, Vec2 u, Vec2 *b, float *pdf)
 {
     Corners t;
     if (!corners_from(v, p, &t)) return false;
-    if (!triangle_by_solid_angle(&t)) {
+    if (t.by_area) {
         *b = warp_triangle(u);
         double b1 = (double)b->x, b2 = (double)b->y;
         D3 q = d3_mad(d3_mad(d3_scale(t.a, 1.0 - b1 - b2), b1, t.b), b2, t.c);
@@ -197,7 +197,7 @@ float sheen_triangle_pdf(const Vec3 v[3], Vec3 p, Vec3 q)
 {
     Corners t;
     if (!corners_from(v, p, &t)) return 0.0f;
-    if (triangle_by_solid_angle(&t)) return (float)(1.0 / t.solid_angle);
+    if (!t.by_area) return (float)(1.0 / t.solid_angle);
     D3 d = d3_sub(q, p);
     return (float)area_density(d3_dot(d, d), -0.5 * t.volume);
 }

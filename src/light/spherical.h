@@ -66,7 +66,7 @@ float sheen_rectangle_pdf(const SheenRectangle *r, Vec3 p, Vec3 q);
 
 /**
  * A point of a triangle, seen from its front, where the vertices run counter-clockwise; uniform over its solid angle,
- * or over its area where the solid angle is too small or too close to the half-space.
+ * or over its area where it looks small from p.
  * @param b  barycentric coordinates of vertices 1 and 2
  * Source: arvo1995-spherical-triangle.
  */

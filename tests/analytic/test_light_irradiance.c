@@ -54,8 +54,8 @@ static void test_rectangle(void **state)
     add_quad(&s, ceiling, rgb_gray(3));
     light_scene_end(&s, SHEEN_ENVIRONMENT_WHOLE);
     // Near, far, beside, millimetres under the edge, and so far that the area takes over.
-    const Vec3 p[] = {{0, 0, 0},         {0.3f, 0.2f, 1.99f}, {5, -4, 0},
-                      {1, 0.5f, 1.998f}, {300, 200, -1000},   {2e4f, 0, -1e5f}};
+    const Vec3 p[] = {{0, 0, 0},         {0.3f, 0.2f, 1.99f}, {5, -4, 0}, {1, 0.5f, 1.998f}, {0.2f, 0.1f, 1.999999f},
+                      {300, 200, -1000}, {2e4f, 0, -1e5f}};
     for (size_t i = 0; i < sizeof p / sizeof *p; ++i)
         check(&s, 0, p[i], up, 3 * polygon_irradiance(ceiling, 4, p[i], up));
     light_scene_destroy(&s);
@@ -67,7 +67,8 @@ static void test_triangle(void **state)
     LightScene s = light_scene_begin();
     add_triangle(&s, ceiling[0], ceiling[1], ceiling[2], rgb_gray(3));
     light_scene_end(&s, SHEEN_ENVIRONMENT_WHOLE);
-    const Vec3 p[] = {{0, 0, 0}, {-0.5f, 0.2f, 1.9f}, {5, -4, 0}, {30, 20, -100}, {1e3f, 0, -1e3f}};
+    const Vec3 p[] = {{0, 0, 0},  {-0.5f, 0.2f, 1.9f}, {-0.5f, 0.2f, 1.9999f}, {-0.5f, 0.2f, 1.999999f},
+                      {5, -4, 0}, {30, 20, -100},      {1e3f, 0, -1e3f}};
     for (size_t i = 0; i < sizeof p / sizeof *p; ++i)
         check(&s, 0, p[i], up, 3 * polygon_irradiance(ceiling, 3, p[i], up));
     light_scene_destroy(&s);
