@@ -6,6 +6,9 @@
 // Rounding leaves about 1e-15 sr in a rectangle's solid angle: below this one the area takes over, whose density is as
 // even there but for points at grazing angles.
 #define RECTANGLE_MIN 1e-8
+// From so many diagonals away, squared, the area serves as well as the solid angle, whose arc tangent, sine and cosine
+// cost as much as tracing the shadow ray.
+#define RECTANGLE_FAR2 2.0f
 // Arvo's formulas lose their digits with the square of the least angle of the spherical triangle. A triangle that is
 // small from p is left to its area, whose density then varies by a third at most; a near one that is thin, since p is
 // almost in its plane, only where it fills less than this.
@@ -30,6 +33,9 @@ SheenRectangle sheen_rectangle_make(Vec3 corner, Vec3 ex, Vec3 ey)
     r.x = d3_scale(x, 1.0 / r.lx);
     r.y = d3_scale(y, 1.0 / r.ly);
     r.z = d3_cross(r.x, r.y);
+    r.center = v3_mad(v3_mad(corner, 0.5f, ex), 0.5f, ey);
+    r.area = (float)(r.lx * r.ly);
+    r.diagonal2 = (float)(r.lx * r.lx + r.ly * r.ly);
     return r;
 }
 
@@ -88,8 +94,26 @@ static double area_density(double d2, double area_times_height)
     return d2 * sqrt(d2) / area_times_height; // d^2 / (area cos), cos = height / d
 }
 
+// Density of area sampling at q as seen from p, 0 from behind.
+static float far_density(const SheenRectangle *r, Vec3 p, Vec3 q)
+{
+    Vec3 d = v3_sub(q, p);
+    float d2 = v3_length2(d), height = -v3_dot(d, r->n);
+    return height > 0.0f ? d2 * sqrtf(d2) / (height * r->area) : 0.0f;
+}
+
+static bool is_far(const SheenRectangle *r, Vec3 p)
+{
+    return v3_length2(v3_sub(r->center, p)) > RECTANGLE_FAR2 * r->diagonal2;
+}
+
 bool sheen_rectangle_sample(const SheenRectangle *r, Vec3 p, Vec2 u, Vec2 *st, float *pdf)
 {
+    if (is_far(r, p)) {
+        *st = u;
+        *pdf = far_density(r, p, v3_mad(v3_mad(r->corner, u.x, r->ex), u.y, r->ey));
+        return *pdf > 0.0f && isfinite(*pdf);
+    }
     View v;
     if (!view_from(r, p, &v)) return false;
     if (!by_solid_angle(&v)) {
@@ -115,6 +139,7 @@ bool sheen_rectangle_sample(const SheenRectangle *r, Vec3 p, Vec2 u, Vec2 *st, f
 
 float sheen_rectangle_pdf(const SheenRectangle *r, Vec3 p, Vec3 q)
 {
+    if (is_far(r, p)) return far_density(r, p, q);
     View v;
     if (!view_from(r, p, &v)) return 0.0f;
     if (by_solid_angle(&v)) return (float)(1.0 / v.solid_angle);

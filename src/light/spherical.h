@@ -47,6 +47,8 @@ typedef struct SheenRectangle {
     Vec3 n;        // unit, ex x ey normalized
     D3 x, y, z;    // unit axes: ex, ey, n
     double lx, ly; // lengths of the edges
+    Vec3 center;
+    float area, diagonal2; // m^2, squared length of the diagonal
 } SheenRectangle;
 
 /** ex and ey are perpendicular and not zero. */

@@ -4,11 +4,14 @@
 #include "base/clock.h"
 #include "image/image.h"
 
-typedef SheenStatus RenderFn(const SheenWork *work, SheenFilm *film, SheenStats *stats);
+typedef struct Integrator {
+    SheenStatus (*render)(const SheenWork *work, SheenFilm *film, SheenStats *stats);
+    SheenEnvironmentSplit environment; // the part of the sky that is sampled as a light
+} Integrator;
 
-static RenderFn *const integrators[] = {
-    [SHEEN_INTEGRATOR_IRRADIANCE] = sheen_irradiance_render,
-    [SHEEN_INTEGRATOR_PATH] = sheen_path_render,
+static const Integrator integrators[] = {
+    [SHEEN_INTEGRATOR_IRRADIANCE] = {sheen_irradiance_render, SHEEN_ENVIRONMENT_HARD},
+    [SHEEN_INTEGRATOR_PATH] = {sheen_path_render, SHEEN_ENVIRONMENT_WHOLE},
 };
 
 SheenStatus sheen_render(const SheenScene *scene, const SheenRenderSettings *settings, SheenPool *pool,
@@ -33,6 +36,7 @@ SheenStatus sheen_render(const SheenScene *scene, const SheenRenderSettings *set
     // The cached integrator finds what is soft of an environment with the rays of its gathers.
     SheenEnvironmentSplit split =
         settings->integrator == SHEEN_INTEGRATOR_IRRADIANCE ? SHEEN_ENVIRONMENT_HARD : SHEEN_ENVIRONMENT_WHOLE;
+    const Integrator *integrator = &integrators[settings->integrator];
     SheenLights *lights = NULL;
     SheenAccel *accel = NULL;
     progress_report(progress, "build", 0.0, 0);
@@ -52,7 +56,7 @@ SheenStatus sheen_render(const SheenScene *scene, const SheenRenderSettings *set
                           .cancel = cancel,
                           .progress = progress,
                           .log = log};
-        status = integrators[settings->integrator](&work, *film, stats);
+        status = integrator->render(&work, *film, stats);
     }
     sheen_accel_destroy(&accel);
     sheen_lights_destroy(&lights);

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cache/irradiance_cache.h"
+
+#include <stdlib.h>
+
+// A point on a record has infinite weight; this finite one still outweighs all others.
+static const float weight_max = 1e6f;
+
+SheenStatus sheen_irradiance_cache_create(float accuracy, bool neighbor_clamping, const Bounds *bounds,
+                                          SheenIrradianceCache **out)
+{
+    *out = NULL;
+    SheenIrradianceCache *c = calloc(1, sizeof *c);
+    if (!c) return SHEEN_ERR_NOMEM;
+    c->accuracy = accuracy;
+    c->neighbor_clamping = neighbor_clamping;
+    if (sheen_octree_create(bounds, &c->octree) != SHEEN_OK) {
+        free(c);
+        return SHEEN_ERR_NOMEM;
+    }
+    *out = c;
+    return SHEEN_OK;
+}
+
+void sheen_irradiance_cache_destroy(SheenIrradianceCache **cache)
+{
+    if (!cache || !*cache) return;
+    sheen_octree_destroy(&(*cache)->octree);
+    free((*cache)->records);
+    free(*cache);
+    *cache = NULL;
+}
+
+// One sphere of influence that clamping visits: a record's own.
+typedef struct Clamp {
+    SheenIrradianceCache *cache;
+    Vec3 p;
+    float R;        // search radius
+    float smallest; // out, first pass: least R_j + distance
+    float limit;    // in, second pass: neighbors shrink to limit + distance
+    bool shrink;    // second pass
+} Clamp;
+
+static void clamp_entry(Clamp *c, const OctreeEntry *e)
+{
+    IrradianceRecord *r = &c->cache->records[e->record];
+    float d = v3_length(v3_sub(r->p, c->p));
+    if (d > c->R) return;
+    if (c->shrink)
+        r->R = maxf(r->R_min, minf(r->R, c->limit + d));
+    else
+        c->smallest = minf(c->smallest, r->R + d);
+}
+
+// Visits all entries of the nodes that the search sphere's box overlaps. A record may be met more than once: both
+// passes are idempotent.
+static void clamp_visit(Clamp *c, uint32_t node, Vec3 lo, float side)
+{
+    const SheenOctree *t = c->cache->octree;
+    if (c->p.x + c->R < lo.x || c->p.x - c->R > lo.x + side || c->p.y + c->R < lo.y || c->p.y - c->R > lo.y + side ||
+        c->p.z + c->R < lo.z || c->p.z - c->R > lo.z + side)
+        return;
+    for (uint32_t e = t->nodes[node].entries; e; e = t->entries[e].next) clamp_entry(c, &t->entries[e]);
+    float half = 0.5f * side;
+    for (unsigned o = 0; o < 8; ++o) {
+        uint32_t child = t->nodes[node].child[o];
+        if (!child) continue;
+        clamp_visit(c, child, v3(o & 1 ? lo.x + half : lo.x, o & 2 ? lo.y + half : lo.y, o & 4 ? lo.z + half : lo.z),
+                    half);
+    }
+}
+
+static void clamp_neighbors(SheenIrradianceCache *cache, IrradianceRecord *r)
+{
+    Clamp c = {.cache = cache, .p = r->p, .R = r->R, .smallest = r->R};
+    clamp_visit(&c, 0, cache->octree->lo, cache->octree->side);
+    r->R = maxf(r->R_min, c.smallest);
+    c.limit = r->R;
+    c.shrink = true;
+    clamp_visit(&c, 0, cache->octree->lo, cache->octree->side);
+}
+
+SheenStatus sheen_irradiance_cache_insert(SheenIrradianceCache *c, const IrradianceRecord *record)
+{
+    if (c->n_records == c->capacity) {
+        uint32_t capacity = c->capacity ? 2 * c->capacity : 1024;
+        if (capacity < c->capacity) return SHEEN_ERR_NOMEM;
+        IrradianceRecord *grown = realloc(c->records, (size_t)capacity * sizeof *grown);
+        if (!grown) return SHEEN_ERR_NOMEM;
+        c->records = grown;
+        c->capacity = capacity;
+    }
+    IrradianceRecord r = *record;
+    if (c->neighbor_clamping) clamp_neighbors(c, &r);
+    SheenStatus status = sheen_octree_insert(c->octree, r.p, c->accuracy * r.R, c->n_records);
+    if (status != SHEEN_OK) return status;
+    c->records[c->n_records++] = r;
+    return SHEEN_OK;
+}
+
+static void consider(const SheenIrradianceCache *c, const OctreeEntry *e, Vec3 p, Vec3 n, float slack,
+                     Contributors *out)
+{
+    Vec3 v = v3_sub(p, e->center);
+    float d2 = v3_length2(v);
+    const IrradianceRecord *r = &c->records[e->record];
+    out->radius = minf(out->radius, r->R + sqrtf(d2));
+    if (d2 >= e->reach2) return;
+    float w = record_weight(r->R, d2, v3_dot(n, r->n)) - 1.0f / c->accuracy;
+    if (!(w > 0.0f) || record_in_front(r, p, n, c->accuracy, slack) || out->n == SHEEN_CONTRIBUTORS_MAX) return;
+    w = minf(w, weight_max);
+    out->record[out->n] = e->record;
+    out->weight[out->n++] = w;
+    out->weight_sum += w;
+}
+
+void sheen_irradiance_cache_find(const SheenIrradianceCache *c, Vec3 p, Vec3 n, float slack, Contributors *out)
+{
+    out->n = 0;
+    out->weight_sum = 0.0f;
+    out->radius = INFINITY;
+    const SheenOctree *t = c->octree;
+    for (OctreeWalk walk = octree_walk(t); walk.node != SHEEN_OCTREE_END; octree_descend(t, &walk, p))
+        for (uint32_t e = t->nodes[walk.node].entries; e; e = t->entries[e].next)
+            consider(c, &t->entries[e], p, n, slack, out);
+}
+
+Rgb sheen_irradiance_cache_interpolate(const SheenIrradianceCache *c, const Contributors *found, Vec3 p, Vec3 n)
+{
+    Rgb sum = rgb_gray(0.0f);
+    if (found->n == 0) return sum;
+    for (unsigned i = 0; i < found->n; ++i)
+        sum = rgb_mad(sum, found->weight[i], record_extrapolate(&c->records[found->record[i]], p, n));
+    return rgb_scale(sum, 1.0f / found->weight_sum);
+}
+
+uint64_t sheen_irradiance_cache_bytes(const SheenIrradianceCache *c)
+{
+    return (uint64_t)c->n_records * sizeof *c->records + sheen_octree_bytes(c->octree);
+}

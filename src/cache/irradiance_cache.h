@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// The store of irradiance records: insertion with clamping, and interpolation. Knows no scene and no rays.
+#ifndef SHEEN_CACHE_IRRADIANCE_CACHE_H
+#define SHEEN_CACHE_IRRADIANCE_CACHE_H
+
+#include "cache/octree.h"
+#include "cache/record.h"
+
+/** Records in the order of insertion. Readers may run in parallel while nobody inserts. */
+typedef struct SheenIrradianceCache {
+    float accuracy;         // a: a record is used where w > 1/a
+    bool neighbor_clamping; // krivanek2006-making-caching-practical sec. 5.2
+    SheenOctree *octree;
+    IrradianceRecord *records;
+    uint32_t n_records, capacity;
+} SheenIrradianceCache;
+
+/**
+ * @param accuracy  a in (0, 1]; small is accurate and slow
+ * @param bounds    where records and shading points will be
+ */
+SHEEN_NODISCARD SheenStatus sheen_irradiance_cache_create(float accuracy, bool neighbor_clamping, const Bounds *bounds,
+                                                          SheenIrradianceCache **out);
+void sheen_irradiance_cache_destroy(SheenIrradianceCache **cache);
+
+/**
+ * Stores a copy of the record. With neighbor clamping its radius first becomes at most R_j + distance of each record j
+ * within R, and those records' radii at most R + distance, none below its own R_min.
+ * Source: krivanek2006-making-caching-practical sec. 5.2, with radii clamped to their minimum first: a contact's tiny
+ * unclamped radius would otherwise push all its neighbors to their minimum too.
+ */
+SHEEN_NODISCARD SheenStatus sheen_irradiance_cache_insert(SheenIrradianceCache *cache, const IrradianceRecord *record);
+
+/** The records that serve a point. */
+enum { SHEEN_CONTRIBUTORS_MAX = 32 };
+typedef struct Contributors {
+    unsigned n;
+    uint32_t record[SHEEN_CONTRIBUTORS_MAX];
+    float weight[SHEEN_CONTRIBUTORS_MAX]; // w - 1/a > 0: continuous where a record's influence ends
+    float weight_sum;                     // 0 when no record covers the point
+    float radius; // least R_j + distance over the records met on the way: what R a record here would have.
+                  // INFINITY where none was met
+} Contributors;
+
+/**
+ * Finds the records with w > 1/a at (p, n), none in front of which the point lies. More than SHEEN_CONTRIBUTORS_MAX:
+ * the first found are kept. Thread-safe.
+ * @param n      unit normal of the lit side
+ * @param slack  metres that p may lie off its surface: added to the tolerance of the test for points in front
+ */
+void sheen_irradiance_cache_find(const SheenIrradianceCache *cache, Vec3 p, Vec3 n, float slack, Contributors *out);
+
+/**
+ * Weighted mean of the contributors' extrapolations: sum w_i E_i(p, n) / sum w_i with w_i = w - 1/a.
+ * @return irradiance, W/m^2; black when `c` is empty
+ * Source: ward1992-gradients eq. (8) with the weight of tabellion2004-gi-film, which has no seams.
+ */
+Rgb sheen_irradiance_cache_interpolate(const SheenIrradianceCache *cache, const Contributors *c, Vec3 p, Vec3 n);
+
+uint64_t sheen_irradiance_cache_bytes(const SheenIrradianceCache *cache);
+
+#endif

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// An irradiance record, where it may be used and what it says there.
+#ifndef SHEEN_CACHE_RECORD_H
+#define SHEEN_CACHE_RECORD_H
+
+#include "math/vec.h"
+
+typedef struct IrradianceRecord {
+    Vec3 p;              // position, world space, metres
+    Vec3 n;              // unit normal of the side that is lit
+    float R;             // clamped harmonic mean distance, metres: the record reaches a R on a plane
+    float R_min;         // the least R that later clamping may set
+    Rgb E;               // irradiance, W/m^2
+    Vec3 translation[3]; // gradient of E for a shift of p, per channel, W/m^3; in the plane of n
+    Vec3 rotation[3];    // gradient of E for a rotation n x n', per channel
+} IrradianceRecord;
+
+/**
+ * Weight of a record: the inverse of the split-sphere estimate of the interpolation error, without the accuracy a.
+ * @param R  the record's radius, metres
+ * @param d2 squared distance to the shading point; @param cos_n  cosine between the normals
+ * @return   w in (0, inf]; the record may be used while w > 1/a
+ * Source: ward1988 eq. (4); krivanek2005-radiance-caching sec. 4.4.
+ */
+static inline float record_weight(float R, float d2, float cos_n)
+{
+    return 1.0f / (sqrtf(d2) / R + safe_sqrtf(1.0f - cos_n));
+}
+
+/**
+ * Whether a point lies so far in front of (or behind) a record's surface that it sees other things than the record.
+ * The tolerance of 2 % of the reach a R lets coplanar points pass whatever rounding did to them: an exact test rejects
+ * half of them and doubles the number of records.
+ * @param slack  metres, added to the tolerance
+ * Source: ward1988, test on d_i(P), there without tolerance.
+ */
+static inline bool record_in_front(const IrradianceRecord *r, Vec3 p, Vec3 n, float a, float slack)
+{
+    float d = v3_dot(v3_sub(p, r->p), v3_add(n, r->n)) * 0.5f;
+    return d < -0.02f * a * r->R - slack;
+}
+
+/**
+ * Irradiance that the record predicts at (p, n), first order in both; never negative.
+ * Source: ward1992-gradients eq. (7); the sign of the rotation as in gather/estimate.h.
+ */
+static inline Rgb record_extrapolate(const IrradianceRecord *r, Vec3 p, Vec3 n)
+{
+    Vec3 d = v3_sub(p, r->p), w = v3_cross(r->n, n);
+    return rgb(maxf(0.0f, r->E.r + v3_dot(d, r->translation[0]) + v3_dot(w, r->rotation[0])),
+               maxf(0.0f, r->E.g + v3_dot(d, r->translation[1]) + v3_dot(w, r->rotation[1])),
+               maxf(0.0f, r->E.b + v3_dot(d, r->translation[2]) + v3_dot(w, r->rotation[2])));
+}
+
+#endif

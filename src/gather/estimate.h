@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// One gather becomes irradiance, its gradients and the distance to what is around. Knows no rays: it maps arrays.
+#ifndef SHEEN_GATHER_ESTIMATE_H
+#define SHEEN_GATHER_ESTIMATE_H
+
+#include "gather/strata.h"
+
+/** What one gather says about its point, in the local frame (x, y in the surface, z along the normal). */
+typedef struct IrradianceEstimate {
+    Rgb E;              // irradiance, W/m^2
+    Rgb translation[2]; // dE/dx, dE/dy, W/m^3
+    Rgb rotation[2];    // dE per radian of rotation of the normal about x, about y
+    float R;            // harmonic mean distance of the rays, metres; INFINITY when nothing is near
+} IrradianceEstimate;
+
+/**
+ * @param s            the strata
+ * @param directions   [cells] local sample directions, unit, z > 0
+ * @param L            [cells] radiance from there, W m^-2 sr^-1
+ * @param distance     [cells] distance of what sends it, metres; INFINITY for the sky
+ * Rays are cosine-weighted, so R is the harmonic mean under that density (it weighs what is overhead more than a
+ * mean over solid angle would). Pure, thread-safe, no allocation.
+ *
+ * Source: ward1992-gradients. Translation in the form that agrees with dense quadrature: every wall between rings,
+ * and sin(theta) at the edges of a cell across the wall between sectors,
+ *   grad E = sum_k { u_k (2 pi / N) sum_{j>=1} sin(t_j-) cos^2(t_j-) (L_jk - L_j-1,k) / min(r_jk, r_j-1,k)
+ *                  + v_k- sum_j (sin(t_j+) - sin(t_j-)) (L_jk - L_j,k-1) / min(r_jk, r_j,k-1) }.
+ * krivanek2005-improved-radiance-gradients prints cos(theta) of the jittered sample instead, which is biased.
+ * Rotation: E(n') = E + (n x n') . grad_r E with grad_r E = integral of L (n x d) over solid angle.
+ */
+void sheen_estimate_irradiance(SheenStrata s, const Vec3 directions[], const Rgb L[], const float distance[],
+                               IrradianceEstimate *out);
+
+/** Harmonic mean n / sum(1 / d); distances of INFINITY are zero terms. INFINITY when all are. */
+float sheen_harmonic_mean(unsigned n, const float distance[]);
+
+#endif

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// The hemisphere cut into rings and sectors of equal projected solid angle.
+#ifndef SHEEN_GATHER_STRATA_H
+#define SHEEN_GATHER_STRATA_H
+
+#include "math/vec.h"
+
+/** M rings times N sectors. Cells are numbered sector-major: cell k M + j is ring j (0 at the pole) of sector k. */
+typedef struct SheenStrata {
+    unsigned rings, sectors;
+} SheenStrata;
+
+/** Strata of about `n_rays` cells (at least 4) with N = pi M: cells near square. Source: ward1992-gradients, sec. 3. */
+SheenStrata sheen_strata_cosine(unsigned n_rays);
+
+static inline unsigned strata_count(SheenStrata s)
+{
+    return s.rings * s.sectors;
+}
+
+/**
+ * The direction of a sample in cell (j, k), cosine-weighted within the cell.
+ * @param u  position in the cell, [0, 1)^2
+ * @return   unit, local: sin^2(theta) = (j + u.x) / M, phi = 2 pi (k + u.y) / N
+ */
+Vec3 sheen_strata_direction(SheenStrata s, unsigned j, unsigned k, Vec2 u);
+
+#endif

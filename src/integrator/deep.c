@@ -1,0 +1,431 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integrator/deep.h"
+
+#include "cache/irradiance_cache.h"
+#include "integrator/hemisphere.h"
+#include "integrator/memo.h"
+#include "math/warp.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// Measured on the Cornell box and a staircase: finer gathers or records gain nothing, coarser ones bias
+// (docs/irradiance-caching.md).
+static const float deep_accuracy = 0.5f;
+static const SheenStrata deep_strata = {12, 36};
+enum {
+    PROBES = 24,    // rays that estimate the radius of a record before it is placed
+    FOLLOWED = 12,  // hits of those that are looked at next
+    KEPT = 4,       // deep records that a stored hit reads
+    ROUNDS_MAX = 4, // of placing records at hits that no record covers
+    RECORDS_MAX = 1 << 17
+};
+// Sizes in units of the scale: the median distance that light goes between surfaces.
+static const float reach_min = 0.02f, reach_max = 0.25f, cell_min = 0.025f, near_cells = 2.5f;
+static const float cell_per_distance = 0.16f;
+
+/** What a stratum of a deep gather saw. */
+typedef struct DeepCell {
+    Vec3 p, n, ng;  // the hit's vertex
+    Rgb weight;     // radiance per irradiance there; black without vertex
+    Rgb sky;        // radiance of the sky and of caustics
+    Rgb direct;     // weight times direct irradiance
+    float distance; // INFINITY for the sky
+    uint32_t record[KEPT];
+    float share[KEPT]; // of the records' irradiance; sum 1, or all 0 where no record covers the hit
+} DeepCell;
+
+/** The solution of one bounce count at one record. */
+typedef struct DeepLight {
+    Rgb E;
+    Vec3 translation[3], rotation[3];
+} DeepLight;
+
+struct SheenDeep {
+    const SheenWork *work;
+    unsigned bounces;
+    float scale;                         // metres
+    SheenIrradianceCache *cache;         // where the records are; their light is in `light`
+    DiffusePoint *points;                // [records]
+    DeepCell *cells;                     // [records][strata], freed after the solution
+    DeepLight *light[SHEEN_DEEP_LEVELS]; // light[i][record] holds k = bounces - i
+    SheenMemo *memo;
+    uint32_t point_capacity, gathered;
+};
+
+// ---- placement --------------------------------------------------------------------------------------------------
+
+/** Points to look at, first in first out. */
+typedef struct Queue {
+    DiffusePoint *items;
+    size_t head, tail, capacity;
+} Queue;
+
+static bool queue_push(Queue *q, const DiffusePoint *p)
+{
+    if (q->tail == q->capacity) {
+        size_t capacity = q->capacity ? 2 * q->capacity : 1024;
+        DiffusePoint *grown = realloc(q->items, capacity * sizeof *grown);
+        if (!grown) return false;
+        q->items = grown;
+        q->capacity = capacity;
+    }
+    q->items[q->tail++] = *p;
+    return true;
+}
+
+static uint32_t point_key(const SheenDeep *d, uint32_t index, uint32_t use)
+{
+    return hash_combine(hash_combine(d->work->options.seed ^ 0xdee9u, index), use);
+}
+
+static float reach_of(const SheenDeep *d, float R)
+{
+    return clampf(deep_accuracy * R, reach_min * d->scale, reach_max * d->scale);
+}
+
+static bool store_point(SheenDeep *d, const DiffusePoint *p, float R)
+{
+    uint32_t i = d->cache->n_records;
+    if (i == d->point_capacity) {
+        uint32_t capacity = i ? 2 * i : 1024;
+        DiffusePoint *grown = realloc(d->points, capacity * sizeof *grown);
+        if (!grown) return false;
+        d->points = grown;
+        d->point_capacity = capacity;
+    }
+    d->points[i] = *p;
+    float clamped = reach_of(d, R) / deep_accuracy;
+    IrradianceRecord record = {.p = p->p, .n = p->n, .R = clamped, .R_min = clamped};
+    return sheen_irradiance_cache_insert(d->cache, &record) == SHEEN_OK;
+}
+
+static bool covered(const SheenDeep *d, Vec3 p, Vec3 n)
+{
+    Contributors c;
+    sheen_irradiance_cache_find(d->cache, p, n, 0.0f, &c);
+    return c.n > 0;
+}
+
+// Places records for all queued points that are not covered; the first hits of each are queued in turn.
+static SheenStatus place(SheenDeep *d, Queue *q, Hemisphere *probe, SheenStats *stats)
+{
+    while (q->head < q->tail && d->cache->n_records < RECORDS_MAX) {
+        DiffusePoint p = q->items[q->head++];
+        if (covered(d, p.p, p.n)) continue;
+        sheen_hemisphere_trace(d->work, &p, point_key(d, d->cache->n_records, 0), 1, probe, stats);
+        if (!store_point(d, &p, sheen_harmonic_mean((unsigned)probe->cells, probe->distance))) return SHEEN_ERR_NOMEM;
+        size_t step = probe->n_vertices / FOLLOWED + 1;
+        for (size_t i = 0; i < probe->n_vertices; i += step)
+            if (!queue_push(q, &probe->vertices[i].point)) return SHEEN_ERR_NOMEM;
+    }
+    q->head = q->tail = 0;
+    return SHEEN_OK;
+}
+
+// ---- gathering --------------------------------------------------------------------------------------------------
+
+typedef struct DeepTask {
+    SheenDeep *deep;
+    Hemisphere *scratch; // [workers]
+    SheenStats *stats;   // [workers]
+    uint32_t first;      // record of item 0
+    unsigned k;          // bounce of the sweep
+    const Rgb *before;   // [records] E_k-1
+    Rgb *now;            // [records] E_k
+} DeepTask;
+
+static DeepCell *cells_of(const SheenDeep *d, uint32_t record)
+{
+    return d->cells + (size_t)record * strata_count(deep_strata);
+}
+
+static void gather_task(void *user, size_t item, unsigned worker)
+{
+    DeepTask *t = user;
+    SheenDeep *d = t->deep;
+    uint32_t record = t->first + (uint32_t)item;
+    Hemisphere *h = &t->scratch[worker];
+    sheen_hemisphere_trace(d->work, &d->points[record], point_key(d, record, 1), 1, h, &t->stats[worker]);
+    sheen_hemisphere_add_caustics(h);
+    DeepCell *cells = cells_of(d, record);
+    for (size_t i = 0; i < h->cells; ++i) {
+        cells[i] = (DeepCell){.sky = h->L[i], .distance = h->distance[i]};
+        h->L[i] = rgb_gray(0.0f);
+    }
+    sheen_hemisphere_direct(d->work, 0, 1, h, &t->stats[worker]);
+    for (size_t i = 0; i < h->n_vertices; ++i) {
+        const GatherVertex *v = &h->vertices[i];
+        DeepCell *c = &cells[v->cell];
+        c->p = v->point.p;
+        c->n = v->point.n;
+        c->ng = v->point.ng;
+        c->weight = v->weight;
+        c->direct = h->L[v->cell];
+    }
+}
+
+static void link_task(void *user, size_t item, unsigned worker)
+{
+    (void)worker;
+    DeepTask *t = user;
+    SheenDeep *d = t->deep;
+    DeepCell *cells = cells_of(d, (uint32_t)item);
+    for (size_t i = 0; i < strata_count(deep_strata); ++i) {
+        DeepCell *c = &cells[i];
+        if (rgb_is_black(c->weight)) continue;
+        Contributors found;
+        sheen_irradiance_cache_find(d->cache, c->p, c->n, 0.0f, &found);
+        float sum = 0.0f;
+        for (int slot = 0; slot < KEPT; ++slot) {
+            unsigned best = found.n;
+            for (unsigned j = 0; j < found.n; ++j)
+                if (found.weight[j] > 0.0f && (best == found.n || found.weight[j] > found.weight[best])) best = j;
+            if (best == found.n) break;
+            c->record[slot] = found.record[best];
+            c->share[slot] = found.weight[best];
+            sum += found.weight[best];
+            found.weight[best] = 0.0f;
+        }
+        for (int slot = 0; slot < KEPT && sum > 0.0f; ++slot) c->share[slot] /= sum;
+    }
+}
+
+// Queues the hits of the records gathered last that no record covers.
+static SheenStatus queue_uncovered(const SheenDeep *d, uint32_t first, Queue *q)
+{
+    for (uint32_t r = first; r < d->cache->n_records; ++r) {
+        const DeepCell *cells = cells_of(d, r);
+        for (size_t i = 0; i < strata_count(deep_strata); ++i) {
+            const DeepCell *c = &cells[i];
+            if (rgb_is_black(c->weight) || covered(d, c->p, c->n)) continue;
+            DiffusePoint p = {c->p, sheen_surface_offset(c->p, c->ng), c->ng, c->n, rgb_scale(c->weight, SHEEN_PI)};
+            if (!queue_push(q, &p)) return SHEEN_ERR_NOMEM;
+        }
+    }
+    return SHEEN_OK;
+}
+
+static SheenStatus gather_new(SheenDeep *d, DeepTask *task)
+{
+    uint32_t n = d->cache->n_records;
+    DeepCell *grown = realloc(d->cells, (size_t)n * strata_count(deep_strata) * sizeof *grown);
+    if (!grown) return SHEEN_ERR_NOMEM;
+    d->cells = grown;
+    task->first = d->gathered;
+    d->gathered = n;
+    bool done = sheen_pool_run(d->work->pool, n - task->first, gather_task, task, d->work->cancel);
+    return done ? SHEEN_OK : SHEEN_ERR_CANCELLED;
+}
+
+static SheenStatus place_and_gather(SheenDeep *d, Queue *q, DeepTask *task, SheenStats *stats)
+{
+    Hemisphere probe = {0};
+    if (!sheen_hemisphere_reserve(&probe, sheen_strata_cosine(PROBES))) return SHEEN_ERR_NOMEM;
+    SheenStatus status = SHEEN_OK;
+    for (int round = 0; round < ROUNDS_MAX && status == SHEEN_OK; ++round) {
+        status = place(d, q, &probe, stats);
+        uint32_t first = d->gathered;
+        if (status != SHEEN_OK || d->cache->n_records == first) break;
+        progress_report(d->work->progress, "deep light", (double)round / ROUNDS_MAX, d->cache->n_records);
+        status = gather_new(d, task);
+        if (status == SHEEN_OK && round + 1 < ROUNDS_MAX) status = queue_uncovered(d, first, q);
+    }
+    sheen_hemisphere_free(&probe);
+    if (status == SHEEN_OK && !sheen_pool_run(d->work->pool, d->gathered, link_task, task, d->work->cancel))
+        status = SHEEN_ERR_CANCELLED;
+    return status;
+}
+
+// ---- solution ---------------------------------------------------------------------------------------------------
+
+// Radiance that a stratum sends after k bounces.
+static Rgb cell_radiance(const DeepCell *c, unsigned k, const Rgb before[])
+{
+    if (k == 0) return c->sky;
+    Rgb E = rgb_gray(0.0f);
+    for (int i = 0; i < KEPT && c->share[i] > 0.0f; ++i) E = rgb_mad(E, c->share[i], before[c->record[i]]);
+    return rgb_add(c->sky, rgb_add(c->direct, rgb_mul(c->weight, E)));
+}
+
+static void world_gradient(const Frame *f, const Rgb local[2], Vec3 out[3])
+{
+    out[0] = v3_mad(v3_scale(f->t, local[0].r), local[1].r, f->b);
+    out[1] = v3_mad(v3_scale(f->t, local[0].g), local[1].g, f->b);
+    out[2] = v3_mad(v3_scale(f->t, local[0].b), local[1].b, f->b);
+}
+
+static void sweep_task(void *user, size_t item, unsigned worker)
+{
+    DeepTask *t = user;
+    SheenDeep *d = t->deep;
+    const DeepCell *cells = cells_of(d, (uint32_t)item);
+    Hemisphere *h = &t->scratch[worker];
+    for (size_t i = 0; i < h->cells; ++i) {
+        h->L[i] = cell_radiance(&cells[i], t->k, t->before);
+        h->distance[i] = cells[i].distance;
+    }
+    sheen_hemisphere_directions(point_key(d, (uint32_t)item, 1), h);
+    IrradianceEstimate e;
+    sheen_estimate_irradiance(h->strata, h->directions, h->L, h->distance, &e);
+    t->now[item] = e.E;
+    unsigned level = d->bounces - t->k;
+    if (level >= SHEEN_DEEP_LEVELS) return;
+    DeepLight *light = &d->light[level][item];
+    Frame frame = frame_from_normal(d->points[item].n);
+    light->E = e.E;
+    world_gradient(&frame, e.translation, light->translation);
+    world_gradient(&frame, e.rotation, light->rotation);
+}
+
+static SheenStatus solve(SheenDeep *d, DeepTask *task)
+{
+    size_t n = d->gathered;
+    Rgb *E[2] = {calloc(n + 1, sizeof(Rgb)), calloc(n + 1, sizeof(Rgb))};
+    SheenStatus status = E[0] && E[1] ? SHEEN_OK : SHEEN_ERR_NOMEM;
+    for (int i = 0; i < SHEEN_DEEP_LEVELS; ++i) {
+        d->light[i] = calloc(n + 1, sizeof(DeepLight));
+        if (!d->light[i]) status = SHEEN_ERR_NOMEM;
+    }
+    for (unsigned k = 0; k <= d->bounces && status == SHEEN_OK; ++k) {
+        task->k = k;
+        task->before = E[(k + 1) & 1];
+        task->now = E[k & 1];
+        if (!sheen_pool_run(d->work->pool, n, sweep_task, task, d->work->cancel)) status = SHEEN_ERR_CANCELLED;
+    }
+    free(E[0]);
+    free(E[1]);
+    return status;
+}
+
+// ---- creation ---------------------------------------------------------------------------------------------------
+
+static int compare_floats(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+// From each seed some rays start, as those of the picture's gathers will; what they hit is looked at first, and the
+// median of their lengths is the scale.
+static SheenStatus queue_seeds(SheenDeep *d, const DiffusePoint seeds[], size_t n, Queue *q, SheenStats *stats)
+{
+    enum { RAYS = 4 };
+    float *lengths = malloc((n * RAYS + 1) * sizeof *lengths);
+    size_t n_lengths = 0;
+    if (!lengths) return SHEEN_ERR_NOMEM;
+    for (uint32_t i = 0; i < n * RAYS; ++i) {
+        const DiffusePoint *s = &seeds[i / RAYS];
+        SheenSampler sampler = sampler_make(hash_u32(d->work->options.seed ^ 0x5eedu), i);
+        Frame frame = frame_from_normal(s->n);
+        Vec3 dir = frame_to_world(&frame, warp_cosine_hemisphere(sampler_2d(&sampler)));
+        if (v3_dot(dir, s->ng) <= 0.0f) continue;
+        Ray ray = {s->origin, INFINITY, dir};
+        Hit hit;
+        sheen_accel_intersect(d->work->accel, &ray, &hit);
+        ++stats->rays_gather;
+        Followed f;
+        sheen_follow(d->work, &ray, &hit, &sampler, &stats->rays_specular, &f);
+        if (!f.scatters) continue;
+        lengths[n_lengths++] = f.distance;
+        if (!queue_push(q, &f.point)) {
+            free(lengths);
+            return SHEEN_ERR_NOMEM;
+        }
+    }
+    qsort(lengths, n_lengths, sizeof *lengths, compare_floats);
+    d->scale = n_lengths ? lengths[n_lengths / 2] : 1.0f;
+    free(lengths);
+    return SHEEN_OK;
+}
+
+SheenStatus sheen_deep_create(const SheenWork *work, const DiffusePoint seeds[], size_t n, unsigned bounces,
+                              SheenStats *stats, SheenDeep **out)
+{
+    *out = NULL;
+    SheenDeep *d = calloc(1, sizeof *d);
+    if (!d) return SHEEN_ERR_NOMEM;
+    d->work = work;
+    d->bounces = bounces;
+    unsigned workers = sheen_pool_size(work->pool);
+    DeepTask task = {
+        .deep = d, .scratch = calloc(workers, sizeof(Hemisphere)), .stats = calloc(workers, sizeof(SheenStats))};
+    Queue queue = {0};
+    SheenStatus status = sheen_irradiance_cache_create(deep_accuracy, false, &work->scene->bounds, &d->cache);
+    if (status == SHEEN_OK) status = sheen_memo_create(&d->memo);
+    if (!task.scratch || !task.stats) status = SHEEN_ERR_NOMEM;
+    for (unsigned i = 0; i < workers && status == SHEEN_OK; ++i)
+        if (!sheen_hemisphere_reserve(&task.scratch[i], deep_strata)) status = SHEEN_ERR_NOMEM;
+    if (status == SHEEN_OK) status = queue_seeds(d, seeds, n, &queue, stats);
+    if (status == SHEEN_OK) status = place_and_gather(d, &queue, &task, stats);
+    if (status == SHEEN_OK) status = solve(d, &task);
+    for (unsigned i = 0; i < workers; ++i) {
+        if (task.stats) sheen_stats_add(stats, &task.stats[i]);
+        if (task.scratch) sheen_hemisphere_free(&task.scratch[i]);
+    }
+    free(task.scratch);
+    free(task.stats);
+    free(queue.items);
+    free(d->cells);
+    d->cells = NULL;
+    if (status != SHEEN_OK) sheen_deep_destroy(&d);
+    *out = d;
+    return status;
+}
+
+void sheen_deep_destroy(SheenDeep **deep)
+{
+    SheenDeep *d = deep ? *deep : NULL;
+    if (!d) return;
+    sheen_irradiance_cache_destroy(&d->cache);
+    sheen_memo_destroy(&d->memo);
+    for (int i = 0; i < SHEEN_DEEP_LEVELS; ++i) free(d->light[i]);
+    free(d->points);
+    free(d->cells);
+    free(d);
+    *deep = NULL;
+}
+
+// ---- reading ----------------------------------------------------------------------------------------------------
+
+static Rgb interpolate(const SheenDeep *d, const MemoCell *cell, int level)
+{
+    Contributors c;
+    sheen_irradiance_cache_find(d->cache, cell->center, cell->n, cell->depth, &c);
+    Rgb sum = rgb_gray(0.0f);
+    for (unsigned i = 0; i < c.n; ++i) {
+        IrradianceRecord r = d->cache->records[c.record[i]];
+        const DeepLight *light = &d->light[level][c.record[i]];
+        r.E = light->E;
+        memcpy(r.translation, light->translation, sizeof r.translation);
+        memcpy(r.rotation, light->rotation, sizeof r.rotation);
+        sum = rgb_mad(sum, c.weight[i], record_extrapolate(&r, cell->center, cell->n));
+    }
+    return c.n ? rgb_scale(sum, 1.0f / c.weight_sum) : sum;
+}
+
+Rgb sheen_deep_read(const SheenDeep *d, Vec3 p, Vec3 n, float distance, int k, uint32_t hash)
+{
+    if (k < 0) return rgb_gray(0.0f);
+    int level = (int)d->bounces - k;
+    float size = maxf(cell_per_distance * distance, cell_min * d->scale);
+    Frame f = frame_from_normal(n);
+    float u = hash_to_unit(hash) - 0.5f, v = hash_to_unit(hash_u32(hash ^ 0x2545f491u)) - 0.5f;
+    Vec3 q = v3_mad(v3_mad(p, u * size, f.t), v * size, f.b);
+    MemoCell cell = sheen_memo_cell(q, n, size, (uint32_t)level);
+    Rgb E;
+    if (sheen_memo_get(d->memo, cell.key, &E)) return E;
+    E = interpolate(d, &cell, level);
+    sheen_memo_put(d->memo, cell.key, E);
+    return E;
+}
+
+float sheen_deep_near(const SheenDeep *d)
+{
+    return near_cells * cell_min * d->scale;
+}
+
+uint32_t sheen_deep_records(const SheenDeep *d)
+{
+    return d->cache->n_records;
+}

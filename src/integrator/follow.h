@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays go on through mirrors and glass to the first surface that scatters.
+#ifndef SHEEN_INTEGRATOR_FOLLOW_H
+#define SHEEN_INTEGRATOR_FOLLOW_H
+
+#include "integrator/work.h"
+#include "material/bsdf.h"
+#include "math/sampler.h"
+
+/** Longest chain of mirrors and panes that is followed. */
+enum { SHEEN_SPECULAR_MAX = 32 };
+
+/** A point that scatters light, on the side from which it was seen. */
+typedef struct DiffusePoint {
+    Vec3 p;
+    Vec3 origin;     // p off the surface, on the seen side: where rays leave
+    Vec3 ng, n;      // unit geometric and shading normals of the seen side
+    Rgb reflectance; // albedo
+} DiffusePoint;
+
+/** The same for a surface seen along wo (unit, toward the viewer). @return false when it is black from there. */
+bool sheen_diffuse_point(const SheenScene *scene, const SurfacePoint *s, Vec3 wo, DiffusePoint *out);
+
+/** Where a ray ended. */
+typedef struct Followed {
+    bool scatters;     // `point` is set
+    bool escaped;      // left the scene along `direction`
+    unsigned specular; // mirrors and panes on the way
+    DiffusePoint point;
+    Vec3 direction; // of the last segment
+    Rgb throughput; // of the mirrors and panes
+    Rgb emitted;    // radiance that the last surface emits back along the last segment
+    float distance; // length of the whole way, metres; INFINITY when escaped
+} Followed;
+
+/**
+ * Follows a ray whose first hit is known; at glass one of reflection and refraction is chosen.
+ * @param specular_rays  is counted up
+ */
+void sheen_follow(const SheenWork *work, const Ray *ray, const Hit *hit, SheenSampler *sampler, uint64_t *specular_rays,
+                  Followed *out);
+
+#endif

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// A gather's rays: what the hemisphere above a point holds, as radiance per stratum and vertices that wait for light.
+#ifndef SHEEN_INTEGRATOR_HEMISPHERE_H
+#define SHEEN_INTEGRATOR_HEMISPHERE_H
+
+#include "gather/estimate.h"
+#include "integrator/direct.h"
+
+/** A scattering point that a gather sees: it sends weight times its irradiance toward the gather's point. */
+typedef struct GatherVertex {
+    DiffusePoint point;
+    Rgb weight;       // radiance in the cell per irradiance at the vertex, 1/sr
+    uint32_t cell;    // stratum that it belongs to
+    float distance;   // length of the way from the vertex before, metres
+    unsigned bounces; // b: the light wanted here is direct light and b - 1 bounces; 0: the sky alone
+} GatherVertex;
+
+/** Buffers of one worker, and the gather that they hold. */
+typedef struct Hemisphere {
+    SheenStrata strata;
+    Frame frame;      // the local frame of `directions`
+    uint32_t key;     // of all random numbers of this gather
+    Vec3 *directions; // [cells] local
+    Rgb *L;           // [cells] radiance so far
+    Rgb *caustic;     // [cells] radiance of emitters seen through mirrors and glass
+    float *distance;  // [cells] to what sends it; INFINITY for the sky
+    GatherVertex *vertices;
+    size_t n_vertices;
+    // scratch
+    GatherVertex *moved;
+    Ray *rays;
+    Hit *hits;
+    DiffusePoint *points;
+    LightNumbers *numbers;
+    Rgb *irradiance; // [vertices] direct
+    DirectScratch direct;
+    size_t cells, capacity; // allocated
+} Hemisphere;
+
+/** @return false when out of memory. */
+bool sheen_hemisphere_reserve(Hemisphere *h, SheenStrata strata);
+void sheen_hemisphere_free(Hemisphere *h);
+
+/** Fills h->directions: the jittered strata of a gather, a function of its key alone. */
+void sheen_hemisphere_directions(uint32_t key, Hemisphere *h);
+
+/**
+ * Traces the fan over a point, in sector order, and fills everything but the light at the vertices.
+ * Directions below the geometric surface, which a shading normal tilts there, are mirrored to above it.
+ * @param bounces  b of the vertices
+ */
+void sheen_hemisphere_trace(const SheenWork *work, const DiffusePoint *point, uint32_t key, unsigned bounces,
+                            Hemisphere *h, SheenStats *stats);
+
+/**
+ * Moves the vertices nearer than `near` to their predecessor on by one cosine-weighted ray, after their direct light
+ * has been added to L; what the ray finds becomes a vertex in their place. The others keep their place and order.
+ * @param near  metres; INFINITY moves all
+ * @return the number of vertices moved
+ */
+size_t sheen_hemisphere_extend(const SheenWork *work, float near, Hemisphere *h, SheenStats *stats);
+
+/** Adds the direct light at vertices [first, n_vertices) to L, `samples` light samples each. */
+void sheen_hemisphere_direct(const SheenWork *work, size_t first, uint32_t samples, Hemisphere *h, SheenStats *stats);
+
+/**
+ * Adds the caustics to L, each cell's cut so that it is at most 1/16 of the whole: an emitter that a single ray finds
+ * through glass is noise that a cache would spread over a wide splotch. Energy that is cut is lost.
+ */
+void sheen_hemisphere_add_caustics(Hemisphere *h);
+
+#endif

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integrator/visibility.h"
+
+#include <stdlib.h>
+
+enum { SPLIT_DEPTH = 3 };
+static const float throughput_min = 1e-4f; // ways that carry less cannot be seen and are dropped
+
+uint32_t sheen_tile_count(const SheenWork *work)
+{
+    uint32_t nx = (work->width + SHEEN_TILE_SIDE - 1) / SHEEN_TILE_SIDE;
+    uint32_t ny = (work->height + SHEEN_TILE_SIDE - 1) / SHEEN_TILE_SIDE;
+    return nx * ny;
+}
+
+Tile sheen_tile(const SheenWork *work, uint32_t index)
+{
+    uint32_t nx = (work->width + SHEEN_TILE_SIDE - 1) / SHEEN_TILE_SIDE;
+    Tile t = {index % nx * SHEEN_TILE_SIDE, index / nx * SHEEN_TILE_SIDE, SHEEN_TILE_SIDE, SHEEN_TILE_SIDE};
+    if (t.width > work->width - t.x) t.width = work->width - t.x;
+    if (t.height > work->height - t.y) t.height = work->height - t.y;
+    return t;
+}
+
+void sheen_visibility_free(Visibility *v)
+{
+    free(v->points);
+    free(v->rays[0]);
+    free(v->rays[1]);
+    free(v->batch);
+    free(v->hits);
+    *v = (Visibility){0};
+}
+
+static bool push_ray(Visibility *v, int list, const EyeRay *r)
+{
+    if (v->n_rays[list] == v->rays_capacity[list]) {
+        size_t capacity = v->rays_capacity[list] ? 2 * v->rays_capacity[list] : 4096;
+        EyeRay *grown = realloc(v->rays[list], capacity * sizeof *grown);
+        if (!grown) return false;
+        v->rays[list] = grown;
+        v->rays_capacity[list] = capacity;
+    }
+    v->rays[list][v->n_rays[list]++] = *r;
+    return true;
+}
+
+static bool push_point(Visibility *v, const ShadingPoint *p)
+{
+    if (v->n_points == v->points_capacity) {
+        size_t capacity = v->points_capacity ? 2 * v->points_capacity : 4096;
+        ShadingPoint *grown = realloc(v->points, capacity * sizeof *grown);
+        if (!grown) return false;
+        v->points = grown;
+        v->points_capacity = capacity;
+    }
+    v->points[v->n_points++] = *p;
+    return true;
+}
+
+static bool reserve_batch(Visibility *v, size_t n)
+{
+    if (n <= v->batch_capacity) return true;
+    free(v->batch);
+    free(v->hits);
+    v->batch = malloc(n * sizeof *v->batch);
+    v->hits = malloc(n * sizeof *v->hits);
+    v->batch_capacity = v->batch && v->hits ? n : 0;
+    return v->batch_capacity > 0;
+}
+
+static bool push_camera_rays(const SheenWork *work, const Tile *tile, uint32_t first, uint32_t n, Visibility *v)
+{
+    v->n_rays[0] = 0;
+    for (uint32_t y = tile->y; y < tile->y + tile->height; ++y)
+        for (uint32_t x = tile->x; x < tile->x + tile->width; ++x)
+            for (uint32_t s = first; s < first + n; ++s) {
+                uint32_t pixel = y * work->width + x;
+                SheenSampler sampler = sampler_make(hash_combine(work->options.seed, pixel), s);
+                Vec2 u = sampler_2d(&sampler);
+                EyeRay r = {sheen_camera_ray(work->camera, work->width, work->height, (float)x + u.x, (float)y + u.y),
+                            rgb_gray(1.0f),
+                            0.0f,
+                            pixel,
+                            s,
+                            1,
+                            0};
+                if (!push_ray(v, 0, &r)) return false;
+            }
+    return true;
+}
+
+// Sends a ray on along its delta lobes.
+static bool split(const SheenWork *work, const EyeRay *r, const SurfacePoint *s, const Bsdf *bsdf, int list,
+                  Visibility *v)
+{
+    if (r->depth >= SHEEN_SPECULAR_MAX) return true;
+    Frame frame = frame_from_normal(s->ns);
+    Vec3 wo_l = frame_to_local(&frame, v3_neg(r->ray.d));
+    BsdfSample lobes[2];
+    int n;
+    if (r->depth < SPLIT_DEPTH) {
+        n = sheen_bsdf_delta_lobes(bsdf, wo_l, lobes);
+    } else {
+        SheenSampler sampler = sampler_make(
+            hash_combine(hash_combine(work->options.seed, r->pixel), r->branch + 7919u * r->depth), r->sample);
+        n = sheen_bsdf_sample(bsdf, wo_l, sampler_1d(&sampler), v2(0.5f, 0.5f), &lobes[0]);
+    }
+    for (int i = 0; i < n; ++i) {
+        EyeRay next = *r;
+        next.throughput = rgb_mul(r->throughput, lobes[i].weight);
+        if (!(rgb_max(next.throughput) > throughput_min)) continue;
+        next.ray = sheen_surface_ray(s, frame_to_world(&frame, lobes[i].wi_l));
+        next.branch = 2 * r->branch + (uint32_t)i;
+        ++next.depth;
+        if (!push_ray(v, list, &next)) return false;
+    }
+    return true;
+}
+
+static void add_first_hit(const SheenWork *work, const EyeRay *r, const Hit *hit, const SurfacePoint *s,
+                          const Bsdf *bsdf, float weight, SheenFilm *film)
+{
+    uint32_t x = r->pixel % work->width, y = r->pixel / work->width;
+    Vec3 n = v3_dot(s->ns, r->ray.d) <= 0.0f ? s->ns : v3_neg(s->ns);
+    Frame frame = frame_from_normal(n);
+    Rgb albedo = sheen_bsdf_albedo(bsdf, frame_to_local(&frame, v3_neg(r->ray.d)));
+    film_add(film, SHEEN_AOV_DEPTH, x, y, rgb_gray(weight * hit->t));
+    film_add(film, SHEEN_AOV_POSITION, x, y, rgb_scale(rgb(s->p.x, s->p.y, s->p.z), weight));
+    film_add(film, SHEEN_AOV_NORMAL, x, y, rgb_scale(rgb(n.x, n.y, n.z), weight));
+    film_add(film, SHEEN_AOV_ALBEDO, x, y, rgb_scale(albedo, weight));
+    film_add(film, SHEEN_AOV_UV, x, y, rgb_scale(rgb(s->uv.x, s->uv.y, 0.0f), weight));
+    if (r->sample == 0)
+        film_add(film, SHEEN_AOV_PRIMITIVE, x, y,
+                 rgb((float)s->shape, (float)s->triangle, s->instance == SHEEN_NONE ? -1.0f : (float)s->instance));
+}
+
+static void add_light(const SheenWork *work, const EyeRay *r, Rgb radiance, float weight, SheenFilm *film,
+                      SheenStats *stats)
+{
+    Rgb value = rgb_scale(rgb_mul(r->throughput, radiance), weight);
+    if (!rgb_finite(value)) {
+        ++stats->nonfinite_samples;
+        return;
+    }
+    film->color[r->pixel] = rgb_add(film->color[r->pixel], value);
+    film_add(film, SHEEN_AOV_DIRECT, r->pixel % work->width, r->pixel / work->width, value);
+}
+
+static bool arrive(const SheenWork *work, EyeRay *r, const Hit *hit, int next, float weight, SheenFilm *film,
+                   Visibility *v, SheenStats *stats)
+{
+    if (hit->shape == SHEEN_NONE) {
+        if (film) add_light(work, r, sheen_environment(work->scene, r->ray.d), weight, film, stats);
+        return true;
+    }
+    SurfacePoint s;
+    sheen_surface_from_hit(work->scene, &r->ray, hit, &s);
+    Bsdf bsdf = sheen_bsdf_at(work->scene, &s);
+    Vec3 wo = v3_neg(r->ray.d);
+    r->length += hit->t;
+    if (film) {
+        Rgb emitted = sheen_emitted(work->scene, &s, wo);
+        if (!rgb_is_black(emitted)) add_light(work, r, emitted, weight, film, stats);
+        if (r->depth == 0) add_first_hit(work, r, hit, &s, &bsdf, weight, film);
+    }
+    if (sheen_bsdf_is_delta(&bsdf)) return split(work, r, &s, &bsdf, next, v);
+    ShadingPoint p = {.throughput = r->throughput, .pixel = r->pixel, .sample = r->sample, .branch = r->branch};
+    if (!sheen_diffuse_point(work->scene, &s, wo, &p.point)) return true;
+    p.footprint = r->length * 2.0f * tanf(0.5f * work->camera->fov_x) / (float)work->width;
+    return push_point(v, &p);
+}
+
+bool sheen_visibility_trace(const SheenWork *work, const Tile *tile, uint32_t first, uint32_t n, SheenFilm *film,
+                            Visibility *v, SheenStats *stats)
+{
+    v->n_points = 0;
+    if (!push_camera_rays(work, tile, first, n, v)) return false;
+    stats->rays_camera += v->n_rays[0];
+    float weight = 1.0f / (float)work->options.spp;
+    for (int list = 0, depth = 0; v->n_rays[list] > 0; list ^= 1, ++depth) {
+        size_t n_rays = v->n_rays[list];
+        if (!reserve_batch(v, n_rays)) return false;
+        for (size_t i = 0; i < n_rays; ++i) v->batch[i] = v->rays[list][i].ray;
+        sheen_accel_intersect_many(work->accel, depth ? SHEEN_INCOHERENT : SHEEN_COHERENT, n_rays, v->batch, v->hits);
+        if (depth) stats->rays_specular += n_rays;
+        v->n_rays[list ^ 1] = 0;
+        for (size_t i = 0; i < n_rays; ++i)
+            if (!arrive(work, &v->rays[list][i], &v->hits[i], list ^ 1, weight, film, v, stats)) return false;
+    }
+    return true;
+}

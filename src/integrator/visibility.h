@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pass 1: rays from the eye, through mirrors and glass, end in shading points.
+#ifndef SHEEN_INTEGRATOR_VISIBILITY_H
+#define SHEEN_INTEGRATOR_VISIBILITY_H
+
+#include "integrator/follow.h"
+
+/** A point that a pixel sees. */
+typedef struct ShadingPoint {
+    DiffusePoint point;
+    Rgb throughput;  // of the mirrors and panes on the way, over the chance of the way
+    float footprint; // side of a pixel's square at this distance, metres
+    uint32_t pixel;  // y * width + x
+    uint32_t sample; // sample of the pixel
+    uint32_t branch; // which of the sample's ways through mirrors and glass
+} ShadingPoint;
+
+/** A rectangle of the picture. */
+typedef struct Tile {
+    uint32_t x, y, width, height;
+} Tile;
+
+enum { SHEEN_TILE_SIDE = 16 };
+uint32_t sheen_tile_count(const SheenWork *work);
+Tile sheen_tile(const SheenWork *work, uint32_t index);
+
+/** A ray on its way. */
+typedef struct EyeRay {
+    Ray ray;
+    Rgb throughput;
+    float length; // of the way so far
+    uint32_t pixel, sample, branch, depth;
+} EyeRay;
+
+/** Buffers and result of one worker. */
+typedef struct Visibility {
+    ShadingPoint *points;
+    size_t n_points, points_capacity;
+    // scratch
+    EyeRay *rays[2];
+    size_t n_rays[2], rays_capacity[2];
+    Ray *batch;
+    Hit *hits;
+    size_t batch_capacity;
+} Visibility;
+
+void sheen_visibility_free(Visibility *v);
+
+/**
+ * Traces samples [first, first + n) of each pixel of a tile. v->points then holds what they see, sample by sample.
+ * At glass both ways are followed three times, after that one of them is chosen.
+ * @param film  emitted light and the sky are added to the colour, weighted by 1 / spp, and first hits to the layers;
+ *              NULL to find the points only
+ * @return false when out of memory
+ */
+bool sheen_visibility_trace(const SheenWork *work, const Tile *tile, uint32_t first, uint32_t n, SheenFilm *film,
+                            Visibility *v, SheenStats *stats);
+
+#endif
