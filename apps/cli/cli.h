@@ -86,11 +86,16 @@ const Command *cli_find_command(const char *name);
  */
 bool cli_parse(const Command *command, int *argc, char **argv, void *values, int *exit_code);
 
+// Messages: one line each on stderr, with '?' for control characters.
+
 /** Prints `sheen: MESSAGE; try 'sheen COMMAND --help'` on stderr. @param command  may be NULL. @return CLI_USAGE */
 int cli_usage_error(const Command *command, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /** Prints `sheen: MESSAGE` on stderr. @return CLI_WORLD */
 int cli_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/** Prints a line that begins with `start` on stderr. */
+void cli_note(const char *start, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /** Flushes stdout. @return CLI_DONE, or CLI_WORLD and a message when what was printed did not arrive. */
 int cli_finish_stdout(void);

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+// `sheen info`: what a scene or image file holds. Everything is collected as JSON; the text is the same, line by line.
+#include "cli.h"
+#include "exr_header.h"
+#include "json_text.h"
+#include "report.h"
+
+#include "image/image.h"
+#include "io/load.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+typedef struct InfoValues {
+    bool json, strict;
+} InfoValues;
+
+static const Option info_options[] = {
+    {.kind = OPTION_FLAG,
+     .name = "json",
+     .meaning = "One JSON object for machines instead of text.",
+     .example = "sheen info --json box.exr",
+     .offset = offsetof(InfoValues, json)},
+    {.kind = OPTION_FLAG,
+     .name = "strict",
+     .meaning = "Take warnings, such as about parts of a scene that are not supported, for errors.",
+     .example = "sheen info --strict scene.xml",
+     .offset = offsetof(InfoValues, strict)},
+    {0},
+};
+
+// ---- scenes -----------------------------------------------------------------------------------------------------
+
+static const char *const shape_kinds[] = {
+    [SHEEN_SHAPE_MESH] = "mesh",
+    [SHEEN_SHAPE_SPHERE] = "sphere",
+    [SHEEN_SHAPE_DISK] = "disk",
+};
+static const char *const material_kinds[] = {
+    [SHEEN_MATERIAL_DIFFUSE] = "diffuse",
+    [SHEEN_MATERIAL_CONDUCTOR] = "conductor",
+    [SHEEN_MATERIAL_DIELECTRIC] = "dielectric",
+    [SHEEN_MATERIAL_THIN_DIELECTRIC] = "thin-dielectric",
+};
+static const char *const light_kinds[] = {
+    [SHEEN_LIGHT_AREA] = "area",
+    [SHEEN_LIGHT_POINT] = "point",
+    [SHEEN_LIGHT_SPOT] = "spot",
+    [SHEEN_LIGHT_DIRECTIONAL] = "directional",
+    [SHEEN_LIGHT_ENVIRONMENT] = "environment",
+};
+
+/** Adds one to a count by name. */
+static void count(json_t *counts, const char *name)
+{
+    json_int_t n = json_integer_value(json_object_get(counts, name));
+    json_object_set_new(counts, name, json_integer(n + 1));
+}
+
+static json_t *cameras_json(const SheenScene *scene)
+{
+    json_t *cameras = json_array();
+    for (uint32_t i = 0; i < scene->n_cameras; ++i) {
+        const SheenCamera *c = &scene->cameras[i];
+        json_array_append_new(cameras,
+                              json_pack("{s:o, s:[I, I], s:f, s:I}", "name", json_text(c->name), "size",
+                                        (json_int_t)c->width, (json_int_t)c->height, "fov_degrees",
+                                        (double)(c->fov_x * 180.0f * SHEEN_INV_PI), "spp", (json_int_t)c->spp));
+    }
+    return cameras;
+}
+
+static json_t *bounds_json(const Bounds *b)
+{
+    if (bounds_is_empty(b) || !v3_finite(b->lo) || !v3_finite(b->hi)) return json_null();
+    return json_pack("[[f, f, f], [f, f, f]]", (double)b->lo.x, (double)b->lo.y, (double)b->lo.z, (double)b->hi.x,
+                     (double)b->hi.y, (double)b->hi.z);
+}
+
+static json_t *scene_json(const char *path, const SheenScene *scene)
+{
+    json_t *shapes = json_object(), *materials = json_object(), *lights = json_object();
+    for (uint32_t i = 0; i < scene->n_shapes; ++i) count(shapes, shape_kinds[scene->shapes[i].kind]);
+    for (uint32_t i = 0; i < scene->n_materials; ++i) count(materials, material_kinds[scene->materials[i].kind]);
+    for (uint32_t i = 0; i < scene->n_lights; ++i) count(lights, light_kinds[scene->lights[i].kind]);
+    return json_pack("{s:o, s:s, s:o, s:I, s:I, s:o, s:o, s:o, s:o}", "file", json_text(path), "kind", "scene",
+                     "shapes", shapes, "triangles", (json_int_t)scene->n_triangles, "instances",
+                     (json_int_t)scene->n_instances, "materials", materials, "lights", lights, "cameras",
+                     cameras_json(scene), "bounds", bounds_json(&scene->bounds));
+}
+
+// ---- images -----------------------------------------------------------------------------------------------------
+
+/** Mean, least and largest finite value of a channel. */
+static json_t *channel_json(const SheenImage *image, int channel)
+{
+    uint64_t n = (uint64_t)image->width * image->height, finite = 0;
+    double sum = 0.0, lo = 0.0, hi = 0.0;
+    for (uint64_t i = 0; i < n; ++i) {
+        const Rgb *p = &image->pixels[i];
+        double x = channel == 0 ? p->r : channel == 1 ? p->g : p->b;
+        if (!isfinite(x)) continue;
+        lo = finite == 0 || x < lo ? x : lo;
+        hi = finite == 0 || x > hi ? x : hi;
+        sum += x;
+        ++finite;
+    }
+    return json_pack("{s:f, s:f, s:f, s:I}", "mean", finite ? sum / (double)finite : 0.0, "min", lo, "max", hi,
+                     "nonfinite", (json_int_t)(n - finite));
+}
+
+static json_t *image_json(const char *path, const SheenImage *image)
+{
+    json_t *channels = json_array(), *attributes = json_object();
+    exr_header_read(path, channels, attributes);
+    size_t n_listed = json_array_size(channels);
+    for (const char *c = "RGB"; n_listed == 0 && *c; ++c) json_array_append_new(channels, json_stringn(c, 1));
+    return json_pack("{s:o, s:s, s:[I, I], s:o, s:o, s:o, s:o, s:o}", "file", json_text(path), "kind", "image", "size",
+                     (json_int_t)image->width, (json_int_t)image->height, "channels", channels, "red",
+                     channel_json(image, 0), "green", channel_json(image, 1), "blue", channel_json(image, 2),
+                     "attributes", attributes);
+}
+
+// ---- output -----------------------------------------------------------------------------------------------------
+
+/** Prints a value in one line: `a 1, b 2` for an object, `1, 2` for an array. */
+static void print_value(const json_t *value, int depth)
+{
+    const char *key;
+    json_t *item;
+    size_t i;
+    int n = 0;
+    if (json_is_object(value)) {
+        json_object_foreach((json_t *)value, key, item)
+        {
+            printf("%s%s ", n++ ? ", " : "", key);
+            print_value(item, depth + 1);
+        }
+    } else if (json_is_array(value)) {
+        if (depth) putchar('(');
+        json_array_foreach(value, i, item)
+        {
+            if (i) fputs(json_is_object(item) ? "; " : ", ", stdout);
+            print_value(item, depth + 1);
+        }
+        if (depth) putchar(')');
+    } else if (json_is_string(value)) {
+        // Names and attributes come from files: nothing in them reaches a terminal as a command.
+        for (const char *c = json_string_value(value); *c; ++c)
+            putchar((unsigned char)*c < ' ' || *c == 127 ? '?' : *c);
+    } else if (json_is_integer(value)) {
+        printf("%lld", (long long)json_integer_value(value));
+    } else if (json_is_real(value)) {
+        printf("%.6g", json_real_value(value));
+    } else {
+        fputs("none", stdout);
+    }
+    if (n == 0 && json_is_object(value)) fputs("none", stdout);
+}
+
+static int print_info(json_t *info, bool as_json)
+{
+    if (!info) return cli_error("out of memory");
+    const char *key;
+    json_t *value;
+    if (as_json) {
+        json_dumpf(info, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
+        putchar('\n');
+    } else {
+        json_object_foreach(info, key, value)
+        {
+            printf("%-11s", key);
+            print_value(value, 0);
+            putchar('\n');
+        }
+    }
+    json_decref(info);
+    return cli_finish_stdout();
+}
+
+static bool is_image(const char *path)
+{
+    static const char *const endings[] = {".exr", ".hdr", ".pfm", ".png", ".jpg", ".jpeg", ".tga", ".bmp"};
+    const char *dot = strrchr(path, '.');
+    for (size_t i = 0; dot && i < sizeof endings / sizeof *endings; ++i)
+        if (strcasecmp(dot, endings[i]) == 0) return true;
+    return false;
+}
+
+static int run_info(int argc, char **argv)
+{
+    InfoValues values = {0};
+    int code;
+    if (!cli_parse(&command_info, &argc, argv, &values, &code)) return code;
+    if (argc < 2) return cli_usage_error(&command_info, "FILE: the file is missing");
+    if (argc > 2) return cli_usage_error(&command_info, "FILE: '%s' is one file too many", argv[2]);
+    const char *path = argv[1];
+    Report report = {.strict = values.strict};
+    SheenLog log = report_log(&report);
+    json_t *info = NULL;
+    if (is_image(path)) {
+        SheenImage image;
+        code = report_exit_code(&report, sheen_image_read(path, &log, &image), path);
+        if (code == CLI_DONE) info = image_json(path, &image);
+        sheen_image_free(&image);
+    } else {
+        SheenScene *scene;
+        code = report_exit_code(&report, sheen_scene_load(path, &log, &scene), path);
+        if (code == CLI_DONE) info = scene_json(path, scene);
+        sheen_scene_destroy(&scene);
+    }
+    return code == CLI_DONE ? print_info(info, values.json) : code;
+}
+
+const Command command_info = {
+    .name = "info",
+    .operands = "FILE",
+    .summary = "what a scene or image file holds",
+    .description =
+        "Prints what a scene file holds (shapes, triangles, materials and lights by kind, cameras, bounds) or "
+        "an image file (size, channels, mean, least and largest values, text attributes).",
+    .options = info_options,
+    .example = "sheen info scenes/cornell-box.xml",
+    .run = run_info,
+};

@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_options.h"
+
+#include "json_text.h"
+
+#include "image/image.h"
+
+#include <string.h>
+
+static const Choice integrators[] = {
+    {"irradiance", SHEEN_INTEGRATOR_IRRADIANCE},
+    {"path", SHEEN_INTEGRATOR_PATH},
+    {"radiance", CHOICE_LATER},
+    {"light-vectors", CHOICE_LATER},
+    {0},
+};
+static const Choice gradients[] = {
+    {"stratified", SHEEN_GRADIENTS_STRATIFIED},
+    {"none", SHEEN_GRADIENTS_NONE},
+    {"numerical", CHOICE_LATER},
+    {"analytical", CHOICE_LATER},
+    {0},
+};
+static const Choice secondaries[] = {
+    {"cache", SHEEN_SECONDARY_CACHE},
+    {"path", SHEEN_SECONDARY_PATH},
+    {0},
+};
+static const Choice on_off[] = {{"on", true}, {"off", false}, {0}};
+static const Choice progress_modes[] = {
+    {"auto", PROGRESS_AUTO},
+    {"plain", PROGRESS_PLAIN},
+    {"none", PROGRESS_NONE},
+    {0},
+};
+static const Choice aovs[] = {
+    {"depth", SHEEN_AOV_DEPTH},
+    {"position", SHEEN_AOV_POSITION},
+    {"normal", SHEEN_AOV_NORMAL},
+    {"albedo", SHEEN_AOV_ALBEDO},
+    {"uv", SHEEN_AOV_UV},
+    {"primitive", SHEEN_AOV_PRIMITIVE},
+    {"direct", SHEEN_AOV_DIRECT},
+    {"indirect", SHEEN_AOV_INDIRECT},
+    {"records", SHEEN_AOV_RECORDS},
+    {"accuracy", SHEEN_AOV_ACCURACY},
+    {"coverage", SHEEN_AOV_COVERAGE},
+    {"error", SHEEN_AOV_ERROR},
+    {0},
+};
+
+#define FIELD(name) .offset = offsetof(RenderValues, name)
+#define RANGE(lo, hi) .min = (lo), .max = (hi)
+
+const Option render_options[] = {
+    {.kind = OPTION_TEXTS,
+     .letter = 'o',
+     .name = "output",
+     .argument = "FILE",
+     .meaning = "The picture to write; its ending tells the format: .exr (float, linear, with the layers of --aov), "
+                ".hdr, .pfm, .png (8 bit, sRGB). May be given several times. A file appears whole or not at all, and "
+                "an existing one is replaced by a finished one only.",
+     .standard = "none; at least one is required",
+     .example = "-o box.exr -o box.png",
+     FIELD(outputs)},
+    {.kind = OPTION_CHOICE,
+     .name = "integrator",
+     .argument = "NAME",
+     .meaning = "How light is found. irradiance: indirect light on diffuse surfaces from a cache of irradiance "
+                "records, mirrors and glass followed. path: the unbiased reference, path tracing with next-event "
+                "estimation and multiple importance sampling.",
+     .standard = "irradiance",
+     .example = "--integrator path",
+     .choices = integrators,
+     .recorded = true,
+     FIELD(integrator)},
+    {.kind = OPTION_SIZE,
+     .name = "size",
+     .argument = "WxH",
+     .meaning = "Size of the picture in pixels. The horizontal angle of view stays.",
+     .standard = "the scene's",
+     .example = "--size 640x480",
+     .recorded = true,
+     RANGE(1, SHEEN_IMAGE_MAX_SIDE),
+     FIELD(size)},
+    {.kind = OPTION_TEXT,
+     .name = "camera",
+     .argument = "NAME|INDEX",
+     .meaning = "Which camera of the scene, by its name or by its index from 0.",
+     .standard = "the first",
+     .example = "--camera 1",
+     .recorded = true,
+     FIELD(camera)},
+    {.kind = OPTION_COUNT,
+     .name = "spp",
+     .argument = "N",
+     .meaning = "Samples per pixel: of the whole estimate with --integrator path; of what is seen and of direct light "
+                "otherwise.",
+     .standard = "the scene's with --integrator path, else 16",
+     .example = "--spp 64",
+     .recorded = true,
+     RANGE(1, 1 << 24),
+     FIELD(spp)},
+    {.kind = OPTION_COUNT,
+     .name = "light-samples",
+     .argument = "N",
+     .meaning = "Light samples for each shading point.",
+     .standard = "1",
+     .example = "--light-samples 4",
+     .recorded = true,
+     RANGE(1, 4096),
+     FIELD(light_samples)},
+    {.kind = OPTION_COUNT,
+     .name = "bounces",
+     .argument = "N",
+     .meaning = "Indirect bounces: 0 is direct light only, 1 is one gather.",
+     .standard = "8",
+     .example = "--bounces 3",
+     .recorded = true,
+     RANGE(0, 1024),
+     FIELD(bounces)},
+    {.kind = OPTION_NUMBER,
+     .name = "time-limit",
+     .argument = "SECONDS",
+     .meaning = "With --integrator path only: pass after pass until the time is up, whatever --spp says. The "
+                "statistics tell how many there were.",
+     .standard = "none",
+     .example = "--integrator path --time-limit 30",
+     .recorded = true,
+     RANGE(0.001, 1e9),
+     FIELD(time_limit)},
+    {.kind = OPTION_NUMBER,
+     .name = "accuracy",
+     .argument = "A",
+     .meaning = "The largest interpolation error of the cache: a record is used where its weight is over 1/A. Smaller "
+                "is finer and slower.",
+     .standard = "0.15",
+     .example = "--accuracy 0.1",
+     .recorded = true,
+     RANGE(0.01, 1.0),
+     FIELD(accuracy)},
+    {.kind = OPTION_COUNT,
+     .name = "gather-rays",
+     .argument = "N",
+     .meaning = "Rays for each record of the cache, rounded to its grid of strata.",
+     .standard = "1024",
+     .example = "--gather-rays 2048",
+     .recorded = true,
+     RANGE(16, 1 << 20),
+     FIELD(gather_rays)},
+    {.kind = OPTION_CHOICE,
+     .name = "gradients",
+     .argument = "stratified|none",
+     .meaning = "Gradients with which records are interpolated: from the strata of the gather, or none.",
+     .standard = "stratified",
+     .example = "--gradients none",
+     .choices = gradients,
+     .recorded = true,
+     FIELD(gradients)},
+    {.kind = OPTION_CHOICE,
+     .name = "secondary",
+     .argument = "cache|path",
+     .meaning = "Light beyond the first bounce: from a sparse cache of its own, or by one path for each gather ray.",
+     .standard = "cache",
+     .example = "--secondary path",
+     .choices = secondaries,
+     .recorded = true,
+     FIELD(secondary)},
+    {.kind = OPTION_CHOICE,
+     .name = "neighbor-clamping",
+     .argument = "on|off",
+     .meaning = "Keep the radius of a record below that of its neighbors plus their distance, so that small detail is "
+                "not skipped.",
+     .standard = "on",
+     .example = "--neighbor-clamping off",
+     .choices = on_off,
+     .recorded = true,
+     FIELD(neighbor_clamping)},
+    {.kind = OPTION_CHOICE,
+     .name = "gradient-clamping",
+     .argument = "on|off",
+     .meaning = "Keep the radius of a record below the distance over which its gradient would change it by as much as "
+                "its value.",
+     .standard = "on",
+     .example = "--gradient-clamping off",
+     .choices = on_off,
+     .recorded = true,
+     FIELD(gradient_clamping)},
+    {.kind = OPTION_SET,
+     .name = "aov",
+     .argument = "NAME,...",
+     .meaning = "More layers in .exr files: depth, position, normal, albedo, uv, primitive, direct, indirect, and of "
+                "the cache records (their positions as dots), accuracy (the value of A), coverage (number of "
+                "contributing records), error (estimated interpolation error).",
+     .standard = "none",
+     .example = "--aov depth,normal,indirect",
+     .choices = aovs,
+     FIELD(aovs)},
+    {.kind = OPTION_NUMBER,
+     .name = "exposure",
+     .argument = "EV",
+     .meaning = "Stops by which .png files are brightened; the other formats are never scaled.",
+     .standard = "0",
+     .example = "--exposure -1.5",
+     RANGE(-64.0, 64.0),
+     FIELD(exposure)},
+    {.kind = OPTION_COUNT,
+     .name = "threads",
+     .argument = "N",
+     .meaning = "Worker threads. The picture is the same, bit by bit, at any number.",
+     .standard = "all cores",
+     .example = "--threads 2",
+     RANGE(1, 1024),
+     FIELD(threads)},
+    {.kind = OPTION_COUNT,
+     .name = "seed",
+     .argument = "N",
+     .meaning = "Seed of all random numbers.",
+     .standard = "0",
+     .example = "--seed 7",
+     .recorded = true,
+     RANGE(0, UINT32_MAX),
+     FIELD(seed)},
+    {.kind = OPTION_TEXT,
+     .name = "stats",
+     .argument = "FILE",
+     .meaning = "Write statistics as JSON: options, times, rays, records, memory. - is standard output.",
+     .standard = "none",
+     .example = "--stats stats.json",
+     FIELD(stats)},
+    {.kind = OPTION_CHOICE,
+     .name = "progress",
+     .argument = "auto|plain|none",
+     .meaning = "Progress on standard error: auto is a live line on a terminal and plain elsewhere, plain a line every "
+                "few seconds.",
+     .standard = "auto",
+     .example = "--progress none",
+     .choices = progress_modes,
+     FIELD(progress)},
+    {.kind = OPTION_FLAG,
+     .name = "quiet",
+     .meaning = "Nothing on standard error but errors.",
+     .example = "--quiet",
+     FIELD(quiet)},
+    {.kind = OPTION_FLAG,
+     .name = "verbose",
+     .meaning = "Say more on standard error: what was loaded, and what took how long.",
+     .example = "--verbose",
+     FIELD(verbose)},
+    {.kind = OPTION_FLAG,
+     .name = "strict",
+     .meaning = "Take warnings, such as about parts of a scene that are not supported, for errors.",
+     .example = "--strict",
+     FIELD(strict)},
+    {.kind = OPTION_LATER, .name = "order"},
+    {.kind = OPTION_LATER, .name = "brdf-error"},
+    {.kind = OPTION_LATER, .name = "basis"},
+    {.kind = OPTION_LATER, .name = "error-metric"},
+    {.kind = OPTION_LATER, .name = "adaptive"},
+    {.kind = OPTION_LATER, .name = "discernible"},
+    {.kind = OPTION_LATER, .name = "cache-in"},
+    {.kind = OPTION_LATER, .name = "cache-out"},
+    {.kind = OPTION_LATER, .name = "records-only"},
+    {.kind = OPTION_LATER, .name = "frame"},
+    {0},
+};
+
+RenderValues render_values_default(void)
+{
+    SheenOptions o = sheen_options_default();
+    return (RenderValues){
+        .integrator = SHEEN_INTEGRATOR_IRRADIANCE,
+        .light_samples = o.light_samples,
+        .bounces = o.bounces,
+        // The nearest decimal, so that statistics say 0.15 and not what a float makes of it.
+        .accuracy = (double)(int)(o.accuracy * 1e4f + 0.5f) / 1e4,
+        .gather_rays = o.gather_rays,
+        .gradients = (int)o.gradients,
+        .secondary = (int)o.secondary,
+        .neighbor_clamping = o.neighbor_clamping,
+        .gradient_clamping = o.gradient_clamping,
+        .seed = o.seed,
+        .progress = PROGRESS_AUTO,
+    };
+}
+
+static bool outputs_check(const TextList *outputs)
+{
+    if (outputs->n == 0) {
+        cli_usage_error(&command_render, "--output: at least one picture file is required");
+        return false;
+    }
+    for (size_t i = 0; i < outputs->n; ++i) {
+        if (!sheen_image_writable_format(outputs->items[i])) {
+            cli_usage_error(&command_render, "--output: '%s' does not end in .exr, .hdr, .pfm or .png",
+                            outputs->items[i]);
+            return false;
+        }
+        for (size_t k = 0; k < i; ++k) {
+            if (strcmp(outputs->items[i], outputs->items[k]) != 0) continue;
+            cli_usage_error(&command_render, "--output: '%s' is given twice", outputs->items[i]);
+            return false;
+        }
+    }
+    return true;
+}
+
+bool render_values_check(const RenderValues *values)
+{
+    if (!outputs_check(&values->outputs)) return false;
+    if (values->time_limit > 0.0 && values->integrator != SHEEN_INTEGRATOR_PATH) {
+        cli_usage_error(&command_render, "--time-limit: goes with --integrator path only");
+        return false;
+    }
+    if ((uint64_t)values->size.width * values->size.height > SHEEN_IMAGE_MAX_PIXELS) {
+        cli_usage_error(&command_render, "--size: a picture has at most %llu pixels",
+                        (unsigned long long)SHEEN_IMAGE_MAX_PIXELS);
+        return false;
+    }
+    return true;
+}
+
+SheenRenderSettings render_values_settings(RenderValues *values, const SheenCamera *camera, uint32_t camera_index)
+{
+    SheenOptions o = sheen_options_default();
+    values->camera = camera->name;
+    if (values->size.width == 0) values->size = (PictureSize){camera->width, camera->height};
+    if (values->spp == 0)
+        values->spp = values->integrator == SHEEN_INTEGRATOR_PATH && camera->spp ? camera->spp : o.spp;
+    o.spp = values->spp;
+    o.light_samples = values->light_samples;
+    o.bounces = values->bounces;
+    o.time_limit = values->time_limit;
+    o.accuracy = (float)values->accuracy;
+    o.gather_rays = values->gather_rays;
+    o.gradients = (SheenGradients)values->gradients;
+    o.secondary = (SheenSecondary)values->secondary;
+    o.neighbor_clamping = values->neighbor_clamping != 0;
+    o.gradient_clamping = values->gradient_clamping != 0;
+    o.seed = values->seed;
+    return (SheenRenderSettings){
+        .integrator = (SheenIntegrator)values->integrator,
+        .camera = camera_index,
+        .width = values->size.width,
+        .height = values->size.height,
+        .aovs = values->aovs,
+        .options = o,
+    };
+}
+
+static const char *choice_name(const Choice *choices, int value)
+{
+    for (const Choice *c = choices; c->name; ++c)
+        if (c->value == value) return c->name;
+    return "";
+}
+
+static json_t *value_json(const Option *o, const void *field)
+{
+    switch (o->kind) {
+    case OPTION_COUNT:
+        return json_integer(*(const uint32_t *)field);
+    case OPTION_NUMBER:
+        return json_real(*(const double *)field);
+    case OPTION_CHOICE:
+        return json_string(choice_name(o->choices, *(const int *)field));
+    case OPTION_SIZE: {
+        const PictureSize *size = field;
+        return json_pack("[I, I]", (json_int_t)size->width, (json_int_t)size->height);
+    }
+    case OPTION_TEXT:
+        return json_text(*(const char *const *)field);
+    default:
+        return json_null();
+    }
+}
+
+json_t *render_values_json(const RenderValues *values)
+{
+    json_t *object = json_object();
+    for (const Option *o = render_options; object && o->name; ++o) {
+        if (!o->recorded) continue;
+        if (json_object_set_new(object, o->name, value_json(o, (const char *)values + o->offset)) == 0) continue;
+        json_decref(object);
+        object = NULL;
+    }
+    return object;
+}
+
+const char *render_integrator_name(const RenderValues *values)
+{
+    return choice_name(integrators, values->integrator);
+}
