@@ -1,0 +1,51 @@
+#!/bin/bash
+# Whatever is wrong with an input ends with 1 and one line that begins with the file's name; info tells of good ones.
+. "$(dirname "$0")/check.sh"
+
+bad() {
+    local file=$1 command more
+    for command in info render; do
+        more=()
+        [ $command = info ] || more=(-o bad.exr)
+        expect 1 $command "$file" "${more[@]}"; says "^sheen: $file(:[0-9]+:[0-9]+)?: "
+        [ ! -e bad.exr ] || fail "a bad scene left a picture"
+    done
+}
+bad nosuch.xml
+mkdir folder.xml; bad folder.xml
+: >empty.xml; bad empty.xml
+echo 'not a scene' >text.xml; bad text.xml
+head -c 2000 "$SCENE" >cut.xml; bad cut.xml
+echo '<scene version="3.0.0"><shape type="sphere"></scene>' >tags.xml; bad tags.xml
+says '^sheen: tags.xml:1:[0-9]+: '
+head -c 4096 /dev/urandom >random.xml; bad random.xml
+cp "$SCENE" scene.nosuch; bad scene.nosuch
+: >empty.exr; expect 1 info empty.exr; says '^sheen: empty.exr: '
+head -c 4096 /dev/urandom >random.exr; expect 1 info random.exr; says '^sheen: random.exr: '
+expect 1 info nosuch.png; says '^sheen: nosuch.png: '
+
+expect 0 info "$SCENE"; silent
+for words in '^kind +scene$' '^triangles +[1-9]' '^lights +area 1' '^cameras ' '^materials +diffuse' '^bounds +\('; do
+    grep -Eq "$words" out || fail "info of the scene does not tell: $words"
+done
+expect 0 render "$SCENE" -o a.exr "${SMALL[@]}" --quiet
+head -c 600 a.exr >cut.exr; expect 1 info cut.exr; says '^sheen: cut.exr: '
+expect 0 info a.exr; silent
+for words in '^kind +image$' '^size +24, 16$' '^red +mean 0\.[0-9]+, min ' 'nonfinite 0$'; do
+    grep -Eq "$words" out || fail "info of the picture does not tell: $words"
+done
+
+# A file's own text reaches the terminal neither as a command nor as a second line.
+name=$(printf 'e\033[31mvil\n.xml')
+cat >"$name" <<'END'
+<scene version="3.0.0">
+    <nosuch name="warned about"/>
+    <shape type="sphere"><emitter type="area"><rgb name="radiance" value="1"/></emitter></shape>
+</scene>
+END
+expect 0 info "$name"
+cat out err >both
+grep -q "$(printf '\033')" both && fail "an escape character was printed"
+grep -vq '^sheen: warning: ' err && fail "a message has a second line"
+expect 1 info "no$name"; says '^sheen: noe\?\[31mvil\?\.xml: '
+passed

@@ -1,0 +1,48 @@
+#!/bin/bash
+# A run that is stopped leaves no half of a file: Ctrl-C once and twice, and a kill at any moment.
+. "$(dirname "$0")/check.sh"
+
+# start WORD...: a render that would take hours, in the background; returns when the scene is loaded, which it says.
+start() {
+    "$SHEEN" render "$SCENE" --size 256x256 --spp 1000000 --progress none --verbose "$@" 2>err &
+    pid=$!
+    for _ in $(seq 300); do
+        [ -s err ] && break
+        sleep 0.1
+    done
+    sleep 0.3
+}
+for signal in INT TERM; do
+    for integrator in path irradiance; do
+        echo old >a.exr
+        start -o a.exr -o b.png --integrator $integrator
+        kill -$signal $pid || fail "$integrator ended before its time"
+        wait $pid; code=$?
+        [ $code -eq 130 ] || fail "$integrator: exit code $code instead of 130 after SIG$signal"
+        [ "$(tail -n 1 err)" = "sheen: interrupted; nothing was written" ] || fail "$integrator: SIG$signal is not told"
+        n_checks=$((n_checks + 3))
+        [ "$(cat a.exr)" = old ] || fail "SIG$signal changed the existing picture"
+        [ "$(echo *)" = "a.exr err" ] || fail "SIG$signal left something: $(echo *)"
+    done
+done
+
+# Twice ends at once, even where the work would not look for long.
+start -o a.exr --integrator path
+kill -INT $pid; kill -INT $pid 2>/dev/null
+wait $pid; code=$?
+[ $code -eq 130 ] || fail "exit code $code instead of 130 after two SIGINT"
+[ "$(cat a.exr)" = old ] || fail "two SIGINT changed the existing picture"
+
+# Whenever it is killed, what stands under the name is the old file or a whole picture.
+for delay in 0.02 0.05 0.08 0.1 0.12 0.14 0.16 0.2 0.25 0.3; do
+    rm -f ./*
+    echo old >a.exr
+    "$SHEEN" render "$SCENE" -o a.exr --size 300x300 --integrator path --spp 1 --bounces 0 --progress none &
+    pid=$!
+    sleep $delay
+    kill -KILL $pid 2>/dev/null
+    wait $pid 2>/dev/null
+    if [ "$(head -c 3 a.exr)" != old ]; then expect 0 info a.exr; fi
+done
+n_checks=$((n_checks + 10))
+passed
