@@ -346,6 +346,7 @@ static SheenStatus read_mesh(Reader *r, SheenArena *arena, MeshData *out)
     SheenStatus s = read_header(r);
     if (!s) s = check_counts(r);
     if (s) return s;
+    r->line++; // the first of the data
     if (!has_roles(r, POSITION, 3)) return sheen_fail(r->log, SHEEN_ERR_PARSE, "%s: no vertex positions", r->name);
     MeshData m = {0};
     for (uint32_t i = 0; i < r->n_elements; ++i)

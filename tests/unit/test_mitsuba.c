@@ -1,0 +1,597 @@
+// SPDX-License-Identifier: Apache-2.0
+// Mitsuba scenes: what each element becomes. Values marked "Mitsuba 3" were read from version 3.9 for the same input.
+#include "image/image.h"
+#include "io_kit.h"
+#include "scene/metal.h"
+
+// Coordinates of order 1 through a few double operations and one rounding.
+#define EPS 2e-6f
+
+static const SheenMaterial *material_named(const SheenScene *s, const char *name)
+{
+    for (uint32_t i = 0; i < s->n_materials; ++i)
+        if (strcmp(s->materials[i].name, name) == 0) return &s->materials[i];
+    fail_msg("no material '%s'", name);
+    return NULL;
+}
+
+/** Loads one <bsdf id="m"> on a rectangle. */
+static const SheenMaterial *material(Kit *k, const char *version, const char *bsdf)
+{
+    char body[4096];
+    snprintf(body, sizeof body, "<shape type=\"rectangle\"><ref id=\"m\"/></shape>%s", bsdf);
+    assert_int_equal(kit_load_version(k, version, body), SHEEN_OK);
+    return material_named(k->scene, "m");
+}
+
+static Vec3 front(const SheenMesh *m, uint32_t i)
+{
+    const uint32_t *t = m->triangles[i];
+    return v3_normalize(v3_cross(v3_sub(m->p[t[1]], m->p[t[0]]), v3_sub(m->p[t[2]], m->p[t[0]])));
+}
+
+// ---- transforms -------------------------------------------------------------------------------------------------
+
+/** Where the rectangle's centre, x and y axes go. */
+static void assert_axes(Kit *k, const char *transform, Vec3 center, Vec3 x, Vec3 y)
+{
+    char body[1024];
+    snprintf(body, sizeof body, "<shape type=\"disk\"><transform name=\"to_world\">%s</transform></shape>", transform);
+    const SheenDisk *d = &kit_scene(k, body)->shapes[0].disk;
+    kit_assert_v3(d->center, center, EPS);
+    kit_assert_v3(d->du, x, EPS);
+    kit_assert_v3(d->dv, v3_neg(y), EPS); // turned round, for uv
+}
+
+static void transforms_compose_in_order(void **state)
+{
+    Kit *k = *state;
+    const Vec3 o = {0, 0, 0}, x = {1, 0, 0}, y = {0, 1, 0};
+    assert_axes(k, "<translate x=\"1\" z=\"-2\"/>", v3(1, 0, -2), x, y);
+    assert_axes(k, "<translate value=\"1, 2, 3\"/>", v3(1, 2, 3), x, y);
+    assert_axes(k, "<scale value=\"2\"/>", o, v3(2, 0, 0), v3(0, 2, 0));
+    assert_axes(k, "<scale y=\"3\"/>", o, x, v3(0, 3, 0));
+    assert_axes(k, "<rotate z=\"1\" angle=\"90\"/>", o, y, v3(-1, 0, 0));
+    assert_axes(k, "<rotate value=\"0 0 1\" angle=\"90\"/><translate x=\"1\"/>", x, y, v3(-1, 0, 0));
+    assert_axes(k, "<translate x=\"1\"/><rotate z=\"1\" angle=\"90\"/>", y, y, v3(-1, 0, 0));
+    assert_axes(k, "<matrix value=\"1 2 0 4  0 1 0 5  0 0 1 6  0 0 0 1\"/>", v3(4, 5, 6), x, v3(2, 1, 0));
+    assert_axes(k, "<matrix value=\"1 2 0 0 1 0 0 0 1\"/>", o, x, v3(2, 1, 0));
+    assert_axes(k, "<lookat origin=\"1,2,3\" target=\"1,2,-7\" up=\"0,1,0\"/>", v3(1, 2, 3), v3(-1, 0, 0), y);
+}
+
+// ---- shapes -----------------------------------------------------------------------------------------------------
+
+static void rectangle_and_cube(void **state)
+{
+    Kit *k = *state;
+    const SheenScene *s = kit_scene(k, "<shape type=\"rectangle\"/><shape type=\"cube\"/>");
+    const SheenMesh *r = &s->shapes[0].mesh, *c = &s->shapes[1].mesh;
+    assert_int_equal(r->n_triangles, 2);
+    kit_assert_v3(front(r, 0), v3(0, 0, 1), EPS);
+    kit_assert_v3(front(r, 1), v3(0, 0, 1), EPS);
+    assert_null(r->n);
+    for (uint32_t i = 0; i < 4; ++i) { // uv (0, 0) of Mitsuba, the picture's upper left, at (-1, -1)
+        assert_float_equal(r->uv[i].x, 0.5f * (r->p[i].x + 1.0f), EPS);
+        assert_float_equal(r->uv[i].y, 0.5f * (1.0f - r->p[i].y), EPS);
+    }
+    assert_int_equal(c->n_triangles, 12);
+    for (uint32_t i = 0; i < 12; ++i) {
+        const uint32_t *t = c->triangles[i];
+        assert_true(v3_dot(front(c, i), v3_add(c->p[t[0]], v3_add(c->p[t[1]], c->p[t[2]]))) > 2.9f); // outward
+    }
+    // Mitsuba 3: a ray down -z hits the top at (0.3, 0.2, 1) with uv (0.6, 0.65).
+    for (uint32_t i = 0; i < c->n_vertices; ++i)
+        if (i >= 12 && i < 16) {
+            assert_float_equal(c->p[i].z, 1.0f, 0.0f);
+            assert_float_equal(c->uv[i].x, 0.5f * (c->p[i].y + 1.0f), EPS);
+            assert_float_equal(1.0f - c->uv[i].y, 0.5f * (c->p[i].x + 1.0f), EPS);
+        }
+    assert_string_equal(s->materials[s->shapes[0].material].name, "default");
+    kit_assert_rgb(sheen_texture_mean(&s->materials[s->shapes[0].material].reflectance), rgb_gray(0.5f), 0.0f);
+}
+
+/** Which side is the front under reflections and flips. All as Mitsuba 3's shading normal. */
+static void front_sides_follow_mitsuba(void **state)
+{
+    Kit *k = *state;
+    kit_write(k, "n.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n");
+    kit_write(k, "none.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nf 1 2 3\n");
+    kit_write(k, "against.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nvn 0 0 -1\nf 1//1 2//1 3//1\n");
+    static const struct {
+        const char *shape, *scale, *more;
+        float z;
+    } cases[] = {
+        {"rectangle", "", "", 1},
+        {"rectangle", "x=\"-1\"", "", 1},
+        {"rectangle", "z=\"-1\"", "", -1},
+        {"rectangle", "", "<boolean name=\"flip_normals\" value=\"true\"/>", -1},
+        {"n.obj", "", "", 1},
+        {"n.obj", "x=\"-1\"", "", 1},
+        {"n.obj", "z=\"-1\"", "", -1},
+        {"n.obj", "x=\"-1\"", "<boolean name=\"flipNormals\" value=\"true\"/>", -1},
+        {"n.obj", "x=\"-1\"", "<boolean name=\"faceNormals\" value=\"true\"/>", -1},
+        {"none.obj", "", "", 1},
+        {"none.obj", "x=\"-1\"", "", -1},
+        {"none.obj", "z=\"-1\"", "", 1},
+        {"none.obj", "", "<boolean name=\"flip_normals\" value=\"true\"/>", -1},
+        {"against.obj", "", "", -1},
+        {"against.obj", "", "<boolean name=\"face_normals\" value=\"true\"/>", 1},
+        {"against.obj", "z=\"-1\"", "", 1},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        char body[512], file[128] = "";
+        bool obj = strstr(cases[i].shape, ".obj") != NULL;
+        if (obj) snprintf(file, sizeof file, "<string name=\"filename\" value=\"%s\"/>", cases[i].shape);
+        snprintf(body, sizeof body,
+                 "<shape type=\"%s\">%s%s<transform name=\"to_world\"><scale %s/></transform></shape>",
+                 obj ? "obj" : cases[i].shape, file, cases[i].more, cases[i].scale);
+        const SheenMesh *m = &kit_scene(k, body)->shapes[0].mesh;
+        float z = front(m, 0).z;
+        if (fabsf(z - cases[i].z) > EPS)
+            fail_msg("%s %s %s: %g", cases[i].shape, cases[i].scale, cases[i].more, (double)z);
+        bool has_normals = obj && !strstr(cases[i].more, "ace");
+        assert_int_equal(m->n != NULL, has_normals); // computed where the file has none
+        if (m->n) kit_assert_v3(m->n[0], v3(0, 0, z), EPS);
+    }
+}
+
+static void spheres_and_disks(void **state)
+{
+    Kit *k = *state;
+    const SheenScene *s = kit_scene(
+        k, "<shape type=\"sphere\"><point name=\"center\" x=\"1\" y=\"0\" z=\"0\"/><float name=\"radius\" value=\"2\"/>"
+           "<transform name=\"to_world\"><scale value=\"2\"/></transform></shape>"
+           "<shape type=\"sphere\"><transform name=\"toWorld\"><scale x=\"-1\"/></transform></shape>"
+           "<shape type=\"sphere\"><boolean name=\"flipNormals\" value=\"true\"/></shape>"
+           "<shape type=\"disk\"><transform name=\"to_world\"><scale z=\"-1\"/></transform></shape>"
+           "<shape type=\"disk\"><transform name=\"to_world\"><scale x=\"-3\"/></transform></shape>"
+           "<shape type=\"disk\"><boolean name=\"flip_normals\" value=\"true\"/></shape>");
+    kit_assert_v3(s->shapes[0].sphere.center, v3(2, 0, 0), EPS);
+    assert_float_equal(s->shapes[0].sphere.radius, 4.0f, EPS);
+    assert_false(s->shapes[0].sphere.flip);
+    assert_true(s->shapes[1].sphere.flip); // Mitsuba 3: mirrored is inside out
+    assert_true(s->shapes[2].sphere.flip);
+    assert_float_equal(s->shapes[3].disk.n.z, -1.0f, EPS);
+    assert_float_equal(s->shapes[4].disk.n.z, 1.0f, EPS);
+    assert_float_equal(s->shapes[4].disk.du.x, -3.0f, EPS);
+    assert_float_equal(s->shapes[5].disk.n.z, -1.0f, EPS);
+    assert_int_equal(k->n_warnings, 2); // no light, no camera
+}
+
+static void an_ellipsoid_becomes_triangles(void **state)
+{
+    Kit *k = *state;
+    const SheenScene *s = kit_scene(k, "<shape type=\"sphere\"><float name=\"radius\" value=\"2\"/>"
+                                       "<transform name=\"to_world\"><scale x=\"2\"/></transform></shape>");
+    assert_non_null(strstr(k->warnings, "scene.xml:2:1: the transform makes the sphere an ellipsoid"));
+    const SheenMesh *m = &s->shapes[0].mesh;
+    assert_float_equal(s->bounds.hi.x, 4.0f, 1e-5f);
+    assert_float_equal(s->bounds.hi.z, 2.0f, 1e-5f);
+    double volume = 0.0;
+    for (uint32_t i = 0; i < m->n_triangles; ++i) {
+        const uint32_t *t = m->triangles[i];
+        volume += (double)v3_dot(m->p[t[0]], v3_cross(m->p[t[1]], m->p[t[2]])) / 6.0;
+    }
+    // 4/3 pi a b c; 128 x 64 quads inscribed lose 0.2 % around (sin t / t, t = 2 pi / 128: 0.04 %) and down.
+    assert_true(fabs(volume / (4.0 / 3.0 * 3.14159265 * 4 * 2 * 2) - 1.0) < 2.5e-3);
+    assert_true(volume > 0.0);
+}
+
+static void meshes_keep_their_texture_orientation(void **state)
+{
+    Kit *k = *state;
+    const char *ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                      "property float u\nproperty float v\nelement face 1\nproperty list uchar int vertex_index\n"
+                      "end_header\n0 0 0 0.1 0.2\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n";
+    kit_write(k, "t.ply", ply);
+    kit_write(k, "t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.1 0.2\nf 1/1 2/1 3/1\n");
+    const SheenScene *s = kit_scene(k, "<shape type=\"obj\"><string name=\"filename\" value=\"t.obj\"/></shape>"
+                                       "<shape type=\"ply\"><string name=\"filename\" value=\"t.ply\"/></shape>"
+                                       "<shape type=\"obj\"><string name=\"filename\" value=\"t.obj\"/>"
+                                       "<boolean name=\"flip_tex_coords\" value=\"false\"/></shape>");
+    assert_float_equal(s->shapes[0].mesh.uv[0].y, 0.2f, EPS); // upward, as OBJ has it
+    assert_float_equal(s->shapes[1].mesh.uv[0].y, 0.8f, EPS); // Mitsuba takes PLY's v as it is, downward
+    assert_float_equal(s->shapes[2].mesh.uv[0].y, 0.8f, EPS);
+}
+
+static void shape_groups_and_instances(void **state)
+{
+    Kit *k = *state;
+    const SheenScene *s = kit_scene(
+        k,
+        "<shape type=\"instance\"><ref id=\"g\"/><transform name=\"to_world\"><translate x=\"5\"/></transform></shape>"
+        "<shape type=\"shapegroup\" id=\"g\"><shape type=\"cube\"/><shape type=\"sphere\">"
+        "<emitter type=\"area\"/></shape></shape>"
+        "<shape type=\"instance\"><ref id=\"g\"/></shape><shape type=\"rectangle\"/>");
+    assert_int_equal(s->n_instances, 2);
+    assert_int_equal(s->n_groups, 2);
+    assert_int_equal(s->groups[0].n_shapes, 1);
+    assert_int_equal(s->groups[1].n_shapes, 2);
+    assert_float_equal(s->bounds.hi.x, 6.0f, EPS);
+    assert_int_equal(s->n_lights, 0);
+    assert_non_null(strstr(k->warnings, "a light inside a shapegroup is not supported"));
+}
+
+// ---- materials --------------------------------------------------------------------------------------------------
+
+static void supported_materials(void **state)
+{
+    Kit *k = *state;
+    const SheenMaterial *m = material(
+        k, "3.0.0", "<bsdf type=\"diffuse\" id=\"m\"><rgb name=\"reflectance\" value=\"0.1, 0.2 0.3\"/></bsdf>");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_DIFFUSE);
+    assert_false(m->two_sided);
+    kit_assert_rgb(m->reflectance.value, rgb(0.1f, 0.2f, 0.3f), 0.0f);
+
+    m = material(k, "3.0.0", "<bsdf type=\"dielectric\" id=\"m\"/>");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_DIELECTRIC);
+    assert_float_equal(m->ior, 1.504183292f, 1e-6f); // Mitsuba 3
+    m = material(k, "0.6.0",
+                 "<bsdf type=\"thindielectric\" id=\"m\"><string name=\"intIOR\" value=\"diamond\"/>"
+                 "<float name=\"extIOR\" value=\"1\"/><rgb name=\"specularTransmittance\" value=\"0.5\"/></bsdf>");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_THIN_DIELECTRIC);
+    assert_float_equal(m->ior, 2.419f, 1e-6f);
+    assert_float_equal(m->specular_transmittance.value.g, 0.5f, 0.0f);
+
+    Rgb eta, copper_k;
+    assert_true(sheen_metal_find("Cu", &eta, &copper_k));
+    m = material(k, "3.0.0", "<bsdf type=\"conductor\" id=\"m\"><string name=\"material\" value=\"Cu\"/></bsdf>");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_CONDUCTOR);
+    kit_assert_rgb(m->k, copper_k, 0.0f);
+    m = material(k, "3.0.0", "<bsdf type=\"conductor\" id=\"m\"/>"); // Mitsuba 3: a perfect mirror
+    kit_assert_rgb(m->eta, rgb_gray(0), 0.0f);
+    kit_assert_rgb(m->k, rgb_gray(1), 0.0f);
+    m = material(k, "0.5.0", "<bsdf type=\"conductor\" id=\"m\"/>"); // 0.6: copper in air
+    kit_assert_rgb(m->k, copper_k, 2e-3f);                           // air's index is 1.000277
+    m = material(k, "0.5.0",
+                 "<bsdf type=\"conductor\" id=\"m\"><float name=\"extEta\" value=\"2\"/>"
+                 "<rgb name=\"eta\" value=\"1 2 4\"/><rgb name=\"k\" value=\"6\"/></bsdf>");
+    kit_assert_rgb(m->eta, rgb(0.5f, 1, 2), EPS);
+    kit_assert_rgb(m->k, rgb_gray(3), EPS);
+    assert_int_equal(k->n_warnings, 2); // no light, no camera
+}
+
+static void stand_ins_are_named_once(void **state)
+{
+    Kit *k = *state;
+    static const struct {
+        const char *bsdf;
+        SheenMaterialKind kind;
+    } cases[] = {
+        {"<bsdf type=\"roughconductor\" id=\"m\"><float name=\"alpha\" value=\"0.1\"/></bsdf>",
+         SHEEN_MATERIAL_CONDUCTOR},
+        {"<bsdf type=\"roughdielectric\" id=\"m\"/>", SHEEN_MATERIAL_DIELECTRIC},
+        {"<bsdf type=\"roughplastic\" id=\"m\"><rgb name=\"diffuseReflectance\" value=\"0.25\"/></bsdf>",
+         SHEEN_MATERIAL_DIFFUSE},
+        {"<bsdf type=\"principled\" id=\"m\"><float name=\"metallic\" value=\"0.8\"/></bsdf>",
+         SHEEN_MATERIAL_CONDUCTOR},
+        {"<bsdf type=\"principled\" id=\"m\"><float name=\"spec_trans\" value=\"0.8\"/></bsdf>",
+         SHEEN_MATERIAL_DIELECTRIC},
+        {"<bsdf type=\"mask\" id=\"m\"><bsdf type=\"twosided\"><bsdf type=\"diffuse\"/></bsdf></bsdf>",
+         SHEEN_MATERIAL_DIFFUSE},
+        {"<bsdf type=\"bumpmap\" id=\"m\"><texture type=\"noise\"/><bsdf type=\"conductor\"/></bsdf>",
+         SHEEN_MATERIAL_CONDUCTOR},
+        {"<bsdf type=\"blendbsdf\" id=\"m\"><bsdf type=\"dielectric\"/><bsdf type=\"diffuse\"/></bsdf>",
+         SHEEN_MATERIAL_DIELECTRIC},
+        {"<bsdf type=\"null\" id=\"m\"/>", SHEEN_MATERIAL_THIN_DIELECTRIC},
+        {"<bsdf type=\"marble\" id=\"m\"/>", SHEEN_MATERIAL_DIFFUSE},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        char body[1024];
+        snprintf(body, sizeof body,
+                 "<shape type=\"cube\"><ref id=\"m\"/></shape><shape type=\"rectangle\"><ref id=\"m\"/>"
+                 "</shape>\n%s",
+                 cases[i].bsdf);
+        const SheenMaterial *m = material_named(kit_scene(k, body), "m");
+        assert_int_equal(m->kind, cases[i].kind);
+        assert_int_equal(k->n_warnings, 3); // the stand-in, no light, no camera
+        assert_non_null(strstr(k->warnings, "scene.xml:3:1: the material '"));
+        assert_non_null(strstr(k->warnings, "stands in"));
+        assert_int_equal(k->scene->n_materials, 1);
+        if (strstr(cases[i].bsdf, "0.25")) assert_float_equal(m->reflectance.value.r, 0.25f, 0.0f);
+        if (strstr(cases[i].bsdf, "twosided")) assert_true(m->two_sided);
+    }
+}
+
+static void nested_references_and_aliases(void **state)
+{
+    Kit *k = *state;
+    const SheenScene *s = kit_scene(
+        k,
+        "<shape type=\"cube\"><ref name=\"bsdf\" id=\"both\"/></shape><shape type=\"cube\"><ref id=\"other\"/></shape>"
+        "<texture type=\"checkerboard\" id=\"t\"><rgb name=\"color0\" value=\"0.9\"/></texture>"
+        "<bsdf type=\"twosided\" id=\"both\"><ref id=\"one\"/></bsdf><alias id=\"one\" as=\"other\"/>"
+        "<bsdf type=\"diffuse\" id=\"one\"><ref name=\"reflectance\" id=\"t\"/></bsdf>");
+    const SheenMaterial *both = material_named(s, "both"), *one = material_named(s, "one");
+    assert_true(both->two_sided);
+    assert_false(one->two_sided);
+    assert_int_equal(one->reflectance.kind, SHEEN_TEXTURE_CHECKERBOARD);
+    assert_int_equal(both->reflectance.kind, SHEEN_TEXTURE_CHECKERBOARD);
+}
+
+static void colors_and_spectra(void **state)
+{
+    Kit *k = *state;
+    static const struct {
+        const char *value;
+        Rgb want;
+        float eps;
+    } cases[] = {
+        {"<rgb name=\"reflectance\" value=\"0.5\"/>", {0.5f, 0.5f, 0.5f}, 0.0f},
+        {"<rgb name=\"reflectance\" value=\"#ff0080\"/>", {1.0f, 0.0f, 0.50196f}, 1e-5f},
+        {"<srgb name=\"reflectance\" value=\"#ff0080\"/>", {1.0f, 0.0f, 0.215861f}, 1e-5f},
+        {"<color name=\"reflectance\" value=\"0.1 0.2 0.3\"/>", {0.1f, 0.2f, 0.3f}, 0.0f},
+        {"<float name=\"reflectance\" value=\"0.7\"/>", {0.7f, 0.7f, 0.7f}, 0.0f},
+        {"<spectrum name=\"reflectance\" value=\"0.25\"/>", {0.25f, 0.25f, 0.25f}, 0.0f},
+        {"<spectrum name=\"reflectance\" value=\"300:0.5, 900:0.5\"/>", {0.5f, 0.5f, 0.5f}, 1e-5f},
+        // Mitsuba 3; the fit of the matching functions is good to about 1 %.
+        {"<spectrum name=\"reflectance\" value=\"400:0.1, 500:0.2, 600:.5, 700:.3\"/>",
+         {0.525029f, 0.329035f, 0.127148f},
+         0.01f},
+        {"<spectrum name=\"reflectance\" filename=\"s.spd\"/>", {0.525029f, 0.329035f, 0.127148f}, 0.01f},
+    };
+    kit_write(k, "s.spd", "# wavelength value\n400 0.1\n500 0.2\n\n600 0.5 # here\n700 0.3\n");
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        char body[512];
+        snprintf(body, sizeof body, "<bsdf type=\"diffuse\" id=\"m\">%s</bsdf>", cases[i].value);
+        kit_assert_rgb(material(k, "3.0.0", body)->reflectance.value, cases[i].want, cases[i].eps);
+    }
+    // A reflectance above 1 would let light grow.
+    const SheenMaterial *m =
+        material(k, "3.0.0", "<bsdf type=\"diffuse\" id=\"m\"><rgb name=\"reflectance\" value=\"2 0.5 -1\"/></bsdf>");
+    kit_assert_rgb(m->reflectance.value, rgb(1, 0.5f, 0), 0.0f);
+    assert_non_null(strstr(k->warnings, "is clamped"));
+}
+
+static void lights_of_spectra(void **state)
+{
+    Kit *k = *state;
+#define CONSTANT(value) "<emitter type=\"constant\">" value "</emitter>"
+    kit_scene(k, CONSTANT("<rgb name=\"radiance\" value=\"1 2 3\"/>"));
+    kit_assert_rgb(k->scene->lights[0].radiance, rgb(1, 2, 3), 0.0f);
+    // One number for all wavelengths: equal-energy white in Mitsuba 3 (these values), gray before.
+    kit_scene(k, CONSTANT("<spectrum name=\"radiance\" value=\"0.5\"/>"));
+    kit_assert_rgb(k->scene->lights[0].radiance, rgb(0.602397f, 0.474146f, 0.454458f), 0.01f);
+    assert_int_equal(kit_load_version(k, "0.6.0", CONSTANT("<spectrum name=\"radiance\" value=\"0.5\"/>")), SHEEN_OK);
+    kit_assert_rgb(k->scene->lights[0].radiance, rgb_gray(0.5f), 0.0f);
+    kit_scene(k, CONSTANT("<spectrum name=\"radiance\" value=\"400:0, 500:4, 600:10, 700:3\"/>"));
+    kit_assert_rgb(k->scene->lights[0].radiance, rgb(11.3495f, 6.45602f, 1.25074f), 0.12f); // Mitsuba 3, to 1 %
+    kit_scene(k, CONSTANT("<spectrum name=\"radiance\" type=\"blackbody\"><float name=\"temperature\" value=\"6500\"/>"
+                          "<float name=\"scale\" value=\"2\"/></spectrum>"));
+    Rgb c = k->scene->lights[0].radiance;
+    // Its chromaticity, x = 0.3135, y = 0.3237, is sRGB (1.0424, 0.9839, 1.0348) at luminance 1.
+    assert_true(fabsf(c.r / c.g - 1.0595f) < 0.01f && fabsf(c.b / c.g - 1.0518f) < 0.01f);
+    // Planck's radiance at 555 nm, 6500 K: 4.27e13 W m^-2 sr^-1 m^-1; the luminosity-weighted mean is within 3 %.
+    assert_true(fabsf(rgb_luminance(c) / (2.0f * 4.27e4f) - 1.0f) < 0.03f);
+}
+
+// ---- textures ---------------------------------------------------------------------------------------------------
+
+/** 2 x 2 floats: top red green, bottom blue white; as PFM, which has no gamma to think of. */
+static void write_picture(Kit *k)
+{
+    static const Rgb pixels[4] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
+    char path[256];
+    kit_path(k, "q.pfm", path);
+    assert_int_equal(sheen_image_write(path, &(SheenImageView){.width = 2, .height = 2, .pixels = pixels}, 0, &k->log),
+                     SHEEN_OK);
+}
+
+static void bitmaps_lie_as_in_mitsuba(void **state)
+{
+    Kit *k = *state;
+    write_picture(k);
+#define BITMAP(more)                                                                                                   \
+    "<bsdf type=\"diffuse\" id=\"m\"><texture type=\"bitmap\" name=\"reflectance\"><string name=\"filename\" "         \
+    "value=\"q.pfm\"/><string name=\"filter_type\" value=\"nearest\"/>" more "</texture></bsdf>"
+    const SheenTexture *t = &material(k, "3.0.0", BITMAP(""))->reflectance;
+    // Mitsuba's (u, v) is our (u, 1 - v); its (0.25, 0.25) is red.
+    kit_assert_rgb(sheen_texture_eval(t, v2(0.25f, 0.75f)), rgb(1, 0, 0), 0.0f);
+    kit_assert_rgb(sheen_texture_eval(t, v2(0.75f, 0.75f)), rgb(0, 1, 0), 0.0f);
+    kit_assert_rgb(sheen_texture_eval(t, v2(0.25f, 0.25f)), rgb(0, 0, 1), 0.0f);
+    assert_int_equal(t->wrap, SHEEN_WRAP_REPEAT);
+
+    t = &material(k, "3.0.0",
+                  BITMAP("<transform name=\"to_uv\"><scale x=\"2\"/><translate x=\"0.5\" y=\"0.5\"/>"
+                         "</transform>"))
+             ->reflectance;
+    // Mitsuba's (0.1, 0.25) goes to (0.7, 0.75): white.
+    kit_assert_rgb(sheen_texture_eval(t, v2(0.1f, 0.75f)), rgb(1, 1, 1), 0.0f);
+    kit_assert_rgb(sheen_texture_eval(t, v2(0.3f, 0.75f)), rgb(0, 0, 1), 0.0f);
+
+    t = &material(k, "0.6.0",
+                  BITMAP("<float name=\"vscale\" value=\"0.5\"/><float name=\"uoffset\" value=\"0.5\"/>"
+                         "<string name=\"wrapMode\" value=\"clamp\"/>"))
+             ->reflectance;
+    // Mitsuba's v in [0, 1] covers the upper half only.
+    kit_assert_rgb(sheen_texture_eval(t, v2(0.25f, 0.1f)), rgb(0, 1, 0), 0.0f);
+    kit_assert_rgb(sheen_texture_eval(t, v2(0.9f, 0.9f)), rgb(0, 1, 0), 0.0f);
+    assert_int_equal(t->wrap, SHEEN_WRAP_CLAMP);
+}
+
+static void pictures_are_read_once(void **state)
+{
+    Kit *k = *state;
+    write_picture(k);
+    const SheenScene *s = kit_scene(
+        k, "<shape type=\"cube\">" BITMAP(
+               "") "</shape><shape type=\"cube\"><bsdf type=\"diffuse\">"
+                   "<texture type=\"bitmap\" name=\"reflectance\"><string name=\"filename\" value=\"q.pfm\"/></texture>"
+                   "</bsdf></shape>");
+    assert_ptr_equal(s->materials[0].reflectance.bitmap.floats, s->materials[1].reflectance.bitmap.floats);
+}
+
+static void byte_pictures_are_decoded(void **state)
+{
+    Kit *k = *state;
+    char path[256];
+    const Rgb gray = rgb_gray(0.2158605f); // 128 in sRGB
+    kit_path(k, "g.png", path);
+    assert_int_equal(sheen_image_write(path, &(SheenImageView){.width = 1, .height = 1, .pixels = &gray}, 0, &k->log),
+                     SHEEN_OK);
+#define PNG(more)                                                                                                      \
+    "<bsdf type=\"diffuse\" id=\"m\"><texture type=\"bitmap\" name=\"reflectance\"><string name=\"filename\" "         \
+    "value=\"g.png\"/>" more "</texture></bsdf>"
+    kit_assert_rgb(sheen_texture_mean(&material(k, "3.0.0", PNG(""))->reflectance), gray, 1e-5f);
+    const float byte = 128.0f / 255.0f;
+    kit_assert_rgb(
+        sheen_texture_mean(&material(k, "3.0.0", PNG("<boolean name=\"raw\" value=\"true\"/>"))->reflectance),
+        rgb_gray(byte), 1e-5f);
+    kit_assert_rgb(sheen_texture_mean(&material(k, "0.6.0", PNG("<float name=\"gamma\" value=\"2\"/>"))->reflectance),
+                   rgb_gray(byte * byte), 1e-5f);
+}
+
+// ---- lights and cameras -----------------------------------------------------------------------------------------
+
+static void lights(void **state)
+{
+    Kit *k = *state;
+    const SheenScene *s = kit_scene(
+        k,
+        "<emitter type=\"point\"><point name=\"position\" x=\"1\" y=\"2\" z=\"3\"/>"
+        "<rgb name=\"intensity\" value=\"7\"/></emitter>"
+        "<emitter type=\"spot\"><transform name=\"to_world\"><lookat origin=\"0,5,0\" target=\"0,0,0\" up=\"1,0,0\"/>"
+        "</transform><float name=\"cutoff_angle\" value=\"60\"/></emitter>"
+        "<emitter type=\"directional\"><vector name=\"direction\" x=\"0\" y=\"-2\" z=\"0\"/>"
+        "<rgb name=\"irradiance\" value=\"3\"/></emitter>"
+        "<shape type=\"rectangle\"><emitter type=\"area\"><rgb name=\"radiance\" value=\"1 2 3\"/></emitter></shape>"
+        "<emitter type=\"collimated\"/>");
+    assert_int_equal(s->n_lights, 4);
+    kit_assert_v3(s->lights[0].position, v3(1, 2, 3), 0.0f);
+    assert_float_equal(s->lights[0].radiance.g, 7.0f, 0.0f);
+    kit_assert_v3(s->lights[1].position, v3(0, 5, 0), 0.0f);
+    kit_assert_v3(s->lights[1].direction, v3(0, -1, 0), EPS);
+    assert_float_equal(s->lights[1].cos_outer, 0.5f, EPS);
+    assert_float_equal(s->lights[1].cos_inner, cosf(0.25f * SHEEN_PI), EPS); // three quarters of the cutoff
+    kit_assert_v3(s->lights[2].direction, v3(0, -1, 0), EPS);
+    assert_int_equal(s->lights[3].kind, SHEEN_LIGHT_AREA);
+    assert_int_equal(s->shapes[s->lights[3].shape].light, 3);
+    assert_non_null(strstr(k->warnings, "'collimated' is not supported and is left out"));
+}
+
+static void environments(void **state)
+{
+    Kit *k = *state;
+    write_picture(k);
+    const SheenScene *s = kit_scene(
+        k, "<emitter type=\"envmap\"><string name=\"filename\" value=\"q.pfm\"/><float name=\"scale\" value=\"2\"/>"
+           "<transform name=\"to_world\"><rotate x=\"1\" angle=\"90\"/></transform></emitter>");
+    const SheenLight *l = &s->lights[s->environment];
+    assert_int_equal(l->environment.width, 2);
+    kit_assert_rgb(l->environment.floats[1], rgb(0, 1, 0), 0.0f);
+    assert_float_equal(l->radiance.b, 2.0f, 0.0f);
+    kit_assert_v3(transform_vector(&l->to_world, v3(0, 1, 0)), v3(0, 0, 1), EPS);
+    kit_assert_v3(transform_vector(&l->to_light, v3(0, 0, 1)), v3(0, 1, 0), EPS);
+    s = kit_scene(k, "<emitter type=\"sunsky\"><vector name=\"sunDirection\" x=\"0\" y=\"1\" z=\"0\"/>"
+                     "<float name=\"skyScale\" value=\"30\"/></emitter>");
+    assert_int_equal(s->n_lights, 2);
+    assert_non_null(strstr(k->warnings, "'sunsky' is not supported"));
+    kit_assert_v3(s->lights[1].direction, v3(0, -1, 0), EPS);
+}
+
+static void cameras(void **state)
+{
+    Kit *k = *state;
+    static const struct {
+        const char *fov;
+        double degrees;
+    } cases[] = {
+        // Mitsuba 3 for 200 x 100 pixels.
+        {"<float name=\"fov\" value=\"40\"/>", 40},
+        {"<float name=\"fov\" value=\"40\"/><string name=\"fov_axis\" value=\"y\"/>", 72.10477447509766},
+        {"<float name=\"fov\" value=\"40\"/><string name=\"fovAxis\" value=\"diagonal\"/>", 36.064788818359375},
+        {"<float name=\"fov\" value=\"40\"/><string name=\"fovAxis\" value=\"smaller\"/>", 72.10477447509766},
+        {"<float name=\"fov\" value=\"40\"/><string name=\"fovAxis\" value=\"larger\"/>", 40},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        char body[1024];
+        snprintf(body, sizeof body,
+                 "<sensor type=\"perspective\" id=\"eye\">%s<transform name=\"toWorld\"><lookat origin=\"0,0,4\" "
+                 "target=\"0,0,0\" up=\"0,1,0\"/></transform><sampler type=\"independent\"><integer "
+                 "name=\"sampleCount\" value=\"64\"/></sampler><film type=\"hdrfilm\"><integer name=\"width\" "
+                 "value=\"200\"/><integer name=\"height\" value=\"100\"/></film></sensor>",
+                 cases[i].fov);
+        const SheenCamera *c = &kit_scene(k, body)->cameras[0];
+        assert_true(fabs((double)c->fov_x * 180.0 / 3.14159265358979 - cases[i].degrees) < 1e-4);
+        assert_int_equal(c->width, 200);
+        assert_int_equal(c->height, 100);
+        assert_int_equal(c->spp, 64);
+        assert_string_equal(c->name, "eye");
+        kit_assert_v3(transform_vector(&c->to_world, v3(0, 0, 1)), v3(0, 0, -1), EPS);
+    }
+    // Neither angle nor focal length: 50 mm on a film of 36 x 24 mm (Mitsuba 3), 768 x 576 pixels.
+    const SheenCamera *c = &kit_scene(k, "<sensor type=\"thinlens\"/>")->cameras[0];
+    assert_true(fabs((double)c->fov_x * 180.0 / 3.14159265358979 - 38.1848) < 1e-4);
+    assert_int_equal(c->width, 768);
+    assert_non_null(strstr(k->warnings, "'thinlens' is not supported: a perspective camera stands in"));
+}
+
+// ---- the language -----------------------------------------------------------------------------------------------
+
+static void parameters_and_includes(void **state)
+{
+    Kit *k = *state;
+    kit_write(k, "part.xml",
+              "<scene version=\"3.0.0\"><default name=\"r\" value=\"9\"/><default name=\"after\" value=\"0.5\"/>"
+              "<shape type=\"sphere\"><float name=\"radius\" value=\"$r\"/></shape></scene>");
+    const SheenScene *s = kit_scene(
+        k, "<default name=\"r\" value=\"2\"/><default name=\"r\" value=\"3\"/><default name=\"x\" value=\"-$r\"/>"
+           "<include filename=\"part.xml\"/><shape type=\"disk\"><transform name=\"to_world\">"
+           "<translate value=\"$x,$r.5,$after\"/></transform></shape>");
+    assert_int_equal(s->n_shapes, 2);
+    assert_float_equal(s->shapes[0].sphere.radius, 2.0f, 0.0f); // the first definition holds
+    kit_assert_v3(s->shapes[1].disk.center, v3(-2, 2.5f, 0.5f), 0.0f);
+}
+
+static void what_is_not_known_is_named_and_ignored(void **state)
+{
+    Kit *k = *state;
+    kit_scene(k, "<shape type=\"cube\" colour=\"red\">\n<float name=\"wobble\" value=\"1\"/>\n"
+                 "<hide name=\"to_world\"/></shape>\n<wibble/>\n<shape type=\"hair\"/>");
+    assert_non_null(strstr(k->warnings, "scene.xml:2:1: the attribute 'colour' of <shape> is not known"));
+    assert_non_null(
+        strstr(k->warnings, "scene.xml:3:1: <float name=\"wobble\"> is not supported in <shape type=\"cube\">"));
+    assert_non_null(strstr(k->warnings, "scene.xml:4:1: <hide name=\"to_world\"> is not supported"));
+    assert_non_null(strstr(k->warnings, "scene.xml:5:1: <wibble> is not supported"));
+    assert_non_null(strstr(k->warnings, "scene.xml:6:1: the shape 'hair' is not supported and is left out"));
+}
+
+static void both_spellings_mean_the_same(void **state)
+{
+    Kit *k = *state;
+    kit_write(k, "t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 1 0 0\nf 1//1 2//1 3//1\n");
+    kit_scene(k, "<shape type=\"obj\"><string name=\"filename\" value=\"t.obj\"/>"
+                 "<boolean name=\"faceNormals\" value=\"true\"/></shape>"
+                 "<shape type=\"obj\"><string name=\"filename\" value=\"t.obj\"/>"
+                 "<boolean name=\"face_normals\" value=\"true\"/></shape>");
+    assert_null(k->scene->shapes[0].mesh.n);
+    assert_null(k->scene->shapes[1].mesh.n);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        KIT_TEST(transforms_compose_in_order),
+        KIT_TEST(rectangle_and_cube),
+        KIT_TEST(front_sides_follow_mitsuba),
+        KIT_TEST(spheres_and_disks),
+        KIT_TEST(an_ellipsoid_becomes_triangles),
+        KIT_TEST(meshes_keep_their_texture_orientation),
+        KIT_TEST(shape_groups_and_instances),
+        KIT_TEST(supported_materials),
+        KIT_TEST(stand_ins_are_named_once),
+        KIT_TEST(nested_references_and_aliases),
+        KIT_TEST(colors_and_spectra),
+        KIT_TEST(lights_of_spectra),
+        KIT_TEST(bitmaps_lie_as_in_mitsuba),
+        KIT_TEST(pictures_are_read_once),
+        KIT_TEST(byte_pictures_are_decoded),
+        KIT_TEST(lights),
+        KIT_TEST(environments),
+        KIT_TEST(cameras),
+        KIT_TEST(parameters_and_includes),
+        KIT_TEST(what_is_not_known_is_named_and_ignored),
+        KIT_TEST(both_spellings_mean_the_same),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
