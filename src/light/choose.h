@@ -3,7 +3,7 @@
 #ifndef SHEEN_LIGHT_CHOOSE_H
 #define SHEEN_LIGHT_CHOOSE_H
 
-#include "light/estimate.h"
+#include "light/unshadowed.h"
 
 /** More lights than this are refused. */
 #define CHOOSE_MAX (1u << 20)

@@ -2,8 +2,8 @@
 // Estimates of the unshadowed irradiance from each light, cheap enough to be asked for every light at every shading
 // point. The lights lie in arrays by kind; each loop over them is without branches, so that the compiler turns it into
 // vector instructions.
-#ifndef SHEEN_LIGHT_ESTIMATE_H
-#define SHEEN_LIGHT_ESTIMATE_H
+#ifndef SHEEN_LIGHT_UNSHADOWED_H
+#define SHEEN_LIGHT_UNSHADOWED_H
 
 #include "light/source.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "light/estimate.h"
+#include "light/unshadowed.h"
 
 // ---- estimates --------------------------------------------------------------------------------------------------
 
