@@ -28,7 +28,8 @@ static Place place_of_direction(const SheenLight *light, Vec3 wi)
 {
     Vec3 d = v3_normalize(transform_vector(&light->to_light, wi));
     uint32_t n_cols = light->environment.width, n_rows = rows_of_cells(light);
-    float u = atan2f(d.x, -d.z) * (0.5f * SHEEN_INV_PI), v = acosf(clampf(d.y, -1.0f, 1.0f)) * SHEEN_INV_PI;
+    float u = atan2f(d.x, -d.z) * (0.5f * SHEEN_INV_PI);
+    float v = atan2f(sqrtf(d.x * d.x + d.z * d.z), d.y) * SHEEN_INV_PI; // near the poles an arc cosine has no digits
     u = u * (float)n_cols - 0.5f;
     if (u < 0.0f) u += (float)n_cols;
     u = clampf(u, 0.0f, (float)n_cols); // rounding can reach the seam
