@@ -3,8 +3,10 @@
 
 // Up to this many lights are compared one with another.
 #define FLAT_MAX 256u
-// Estimates on the stack: of one group, or of all groups; the square of it is CHOOSE_MAX.
-#define WEIGHTS_MAX 1024u
+// Estimates on the stack: of the lights of a group, or of all groups and the lights without a place.
+#define GROUPS_MAX 1024u
+#define WEIGHTS_MAX (GROUPS_MAX + CHOOSE_INFINITE_MAX)
+_Static_assert(GROUPS_MAX *GROUPS_MAX == CHOOSE_MAX, "groups are as large as they are many");
 
 typedef struct Weights {
     float w[WEIGHTS_MAX + ESTIMATE_PADDING];
@@ -28,15 +30,16 @@ static void weigh_lights(const Chooser *c, uint32_t first, uint32_t count, Vec3 
 
 static void weigh_groups(const Chooser *c, Vec3 p, Vec3 n, Weights *w)
 {
+    uint32_t n_infinite = c->n - c->n_placed;
     sheen_bodies_weigh(&c->groups, 0, c->n_groups, p, n, w->w);
-    for (uint32_t i = 0; i < c->n_groups; ++i) w->w[i] += c->infinite[i];
-    add_up(w, c->n_groups);
+    sheen_estimate_table_weigh(&c->table, c->n_placed, n_infinite, p, n, w->w + c->n_groups);
+    add_up(w, c->n_groups + n_infinite);
 }
 
 static uint32_t group_count(const Chooser *c, uint32_t group)
 {
     uint32_t first = group * c->group_size;
-    return c->n - first < c->group_size ? c->n - first : c->group_size;
+    return c->n_placed - first < c->group_size ? c->n_placed - first : c->group_size;
 }
 
 // The last entry above zero takes what rounding of the sums leaves over. @return the probability, 0 for none
@@ -59,18 +62,22 @@ float sheen_chooser_pick(const Chooser *c, Vec3 p, Vec3 n, float *u, uint32_t *l
     *light = 0;
     if (c->n <= 1) return c->n == 1 ? 1.0f : 0.0f; // nothing to compare
     Weights w;
-    uint32_t group = 0;
-    float of_group = 1.0f;
-    uint32_t count = c->n;
-    if (c->n_groups > 0) {
-        weigh_groups(c, p, n, &w);
-        of_group = pick(&w, u, &group);
-        if (of_group == 0.0f) return 0.0f;
-        count = group_count(c, group);
+    if (c->n_groups == 0) {
+        weigh_lights(c, 0, c->n, p, n, &w);
+        return pick(&w, u, light);
     }
-    weigh_lights(c, group * c->group_size, count, p, n, &w);
+    uint32_t group = 0;
+    weigh_groups(c, p, n, &w);
+    float of_group = pick(&w, u, &group);
+    if (of_group == 0.0f) return 0.0f;
+    if (group >= c->n_groups) {
+        *light = c->n_placed + (group - c->n_groups);
+        return of_group;
+    }
+    uint32_t first = group * c->group_size;
+    weigh_lights(c, first, group_count(c, group), p, n, &w);
     float in_group = pick(&w, u, light);
-    *light += group * c->group_size;
+    *light += first;
     return of_group * in_group;
 }
 
@@ -87,8 +94,9 @@ float sheen_chooser_probability(const Chooser *c, Vec3 p, Vec3 n, uint32_t light
         weigh_lights(c, 0, c->n, p, n, &w);
         return share(&w, light);
     }
-    uint32_t group = light / c->group_size;
     weigh_groups(c, p, n, &w);
+    if (light >= c->n_placed) return share(&w, c->n_groups + (light - c->n_placed));
+    uint32_t group = light / c->group_size;
     float of_group = share(&w, group);
     weigh_lights(c, group * c->group_size, group_count(c, group), p, n, &w);
     return of_group * share(&w, light % c->group_size);
@@ -100,19 +108,13 @@ float sheen_chooser_probability(const Chooser *c, Vec3 p, Vec3 n, uint32_t light
 static void set_group(Chooser *c, uint32_t group, const Source sources[])
 {
     Bounds box = bounds_empty();
-    double power = 0.0, infinite = 0.0;
+    double power = 0.0;
     uint32_t count = group_count(c, group);
-    for (const Source *s = sources + group * c->group_size, *end = s + count; s < end; ++s) {
-        if (isinf(s->radius)) {
-            infinite += (double)s->power;
-            continue;
-        }
+    for (const Source *s = sources + (size_t)group * c->group_size, *end = s + count; s < end; ++s) {
         Vec3 r = v3(s->radius, s->radius, s->radius);
         box = bounds_add(bounds_add(box, v3_sub(s->center, r)), v3_add(s->center, r));
         power += (double)s->power;
     }
-    c->infinite[group] = (float)infinite;
-    if (bounds_is_empty(&box)) return;
     Vec3 center = bounds_center(&box);
     Bodies *b = &c->groups;
     b->x[group] = center.x, b->y[group] = center.y, b->z[group] = center.z;
@@ -125,11 +127,11 @@ bool sheen_chooser_init(const Source sources[], uint32_t n, SheenArena *arena, C
 {
     *c = (Chooser){.n = n};
     if (!sheen_estimate_table_init(sources, n, arena, &c->table)) return false;
+    while (c->n_placed < n && !isinf(sources[c->n_placed].radius)) ++c->n_placed;
     if (n <= FLAT_MAX) return true;
-    c->group_size = (uint32_t)ceil(sqrt(n));
-    c->n_groups = (n + c->group_size - 1) / c->group_size;
-    c->infinite = SHEEN_ARENA_NEW(arena, float, c->n_groups);
-    if (!c->infinite || !sheen_bodies_init(c->n_groups, arena, &c->groups)) return false;
+    c->group_size = (uint32_t)ceil(sqrt(c->n_placed));
+    c->n_groups = (c->n_placed + c->group_size - 1) / c->group_size;
+    if (!sheen_bodies_init(c->n_groups, arena, &c->groups)) return false;
     for (uint32_t i = 0; i < c->n_groups; ++i) set_group(c, i, sources);
     return true;
 }

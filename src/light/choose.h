@@ -5,16 +5,17 @@
 
 #include "light/unshadowed.h"
 
-/** More lights than this are refused. */
+/** More lights than these are refused: in all, and those without a place (directional lights, the environment). */
 #define CHOOSE_MAX (1u << 20)
+#define CHOOSE_INFINITE_MAX 256u
 
 typedef struct Chooser {
     EstimateTable table;
     uint32_t n;
-    // Many lights are chosen in two steps, a group of neighbours first. Groups are runs of `group_size` sources.
-    uint32_t n_groups, group_size; // none for few lights
+    // Many lights are chosen in two steps, a group of neighbours first. Groups are runs of `group_size` sources; the
+    // last sources, those without a place, stand for themselves among the groups.
+    uint32_t n_placed, n_groups, group_size; // no groups for few lights
     Bodies groups;
-    float *infinite; // [n_groups] what lights without a place add to a group's estimate
 } Chooser;
 
 /** @param sources  [n], n <= CHOOSE_MAX, in the order of their kinds, neighbours together; borrowed

@@ -108,9 +108,14 @@ SheenStatus sheen_lights_create(const SheenScene *scene, SheenEnvironmentSplit s
                                 SheenLights **out)
 {
     *out = NULL;
-    if (scene->n_lights > CHOOSE_MAX)
-        return sheen_fail(log, SHEEN_ERR_UNSUPPORTED, "%s: %u lights, more than %u", scene->name, scene->n_lights,
-                          CHOOSE_MAX);
+    uint32_t n_infinite = 0;
+    for (uint32_t i = 0; i < scene->n_lights; ++i)
+        n_infinite +=
+            scene->lights[i].kind == SHEEN_LIGHT_DIRECTIONAL || scene->lights[i].kind == SHEEN_LIGHT_ENVIRONMENT;
+    if (scene->n_lights > CHOOSE_MAX || n_infinite > CHOOSE_INFINITE_MAX)
+        return sheen_fail(log, SHEEN_ERR_UNSUPPORTED,
+                          "%s: %u lights, %u of them directional, are more than the %u and %u that can be rendered",
+                          scene->name, scene->n_lights, n_infinite, CHOOSE_MAX, CHOOSE_INFINITE_MAX);
     SheenLights *l = calloc(1, sizeof *l);
     SheenStatus status = l ? build(scene, split, l) : SHEEN_ERR_NOMEM;
     if (status) {

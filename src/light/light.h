@@ -20,7 +20,7 @@ typedef enum SheenEnvironmentSplit {
 /**
  * @param scene  borrowed; must outlive the result
  * @param out    owned by the caller; NULL on failure
- * Errors: SHEEN_ERR_NOMEM; SHEEN_ERR_UNSUPPORTED for more than 2^20 lights.
+ * Errors: SHEEN_ERR_NOMEM; SHEEN_ERR_UNSUPPORTED for more than 2^20 lights, or 256 directional ones.
  */
 SHEEN_NODISCARD SheenStatus sheen_lights_create(const SheenScene *scene, SheenEnvironmentSplit split,
                                                 const SheenLog *log, SheenLights **out);
@@ -47,8 +47,8 @@ uint32_t sheen_lights_count(const SheenLights *lights);
  * @param p, n       the point and its unit normal on the side that is lit
  * @param u          in [0, 1); on return rescaled to be uniform again
  * @param light      index for the functions below
- * @return the probability of the choice, 0 when none is chosen, since no light can reach the point; a single light is
- *         always chosen
+ * @return the probability of the choice; 0 when none is chosen, since none that came into question can reach the
+ *         point. A single light is always chosen
  */
 float sheen_lights_choose(const SheenLights *lights, Vec3 p, Vec3 n, float *u, uint32_t *light);
 

@@ -281,9 +281,7 @@ SheenStatus sheen_source_init(const SheenScene *scene, const SheenLight *light, 
     case SHEEN_LIGHT_ENVIRONMENT:
         out->kind = SOURCE_ENVIRONMENT;
         out->radius = INFINITY;
-        SheenStatus status = sheen_environment_sampler_init(light, split, arena, &out->environment);
-        out->power = out->environment.flux;
-        return status;
+        return sheen_environment_sampler_init(light, split, arena, &out->environment);
     }
     return SHEEN_OK;
 }
