@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/exr.h"
 
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -11,17 +10,16 @@ typedef struct ExrPart {
     int index;
     exr_storage_t storage;
     exr_attr_box2i_t data, display; // inclusive corners
-    const char *channels[3];        // R, G, B; all the same for gray; NULL where missing
+    const char *channels[3];        // R, G, B, or one for gray; NULL where missing
     bool gray;
 } ExrPart;
 
-/** Where decoded pixels go: one chunk's, then the picture. */
-typedef struct ExrChunk {
-    exr_decode_pipeline_t pipeline;
-    bool ready;  // pipeline is initialized
-    Rgb *pixels; // [height][width] of the largest chunk
-    size_t capacity;
-} ExrChunk;
+/** What the pipeline's last stage needs: where the first pixel of the chunk lies in the data window. */
+typedef struct ExrTarget {
+    const ExrPart *part;
+    SheenImage *out;
+    int64_t x, y;
+} ExrTarget;
 
 static int64_t box_width(exr_attr_box2i_t b)
 {
@@ -82,99 +80,124 @@ static SheenStatus choose_channels(const ImageSource *source, const exr_attr_chl
                           list->num_channels - 1);
     for (int i = 0; i < list->num_channels; ++i) {
         const exr_attr_chlist_entry_t *e = &list->entries[i];
-        bool used =
-            e->name.str == part->channels[0] || e->name.str == part->channels[1] || e->name.str == part->channels[2];
         if (e->x_sampling != 1 || e->y_sampling != 1 || (part->gray && !strcasecmp(e->name.str, "RY")))
-            return sheen_fail(source->log, SHEEN_ERR_UNSUPPORTED, "%s: channel '%s': %s", source->name, e->name.str,
-                              used ? "subsampled colour is not supported" : "luminance and chroma are not supported");
+            return sheen_fail(source->log, SHEEN_ERR_UNSUPPORTED,
+                              "%s: channel '%s': subsampled colour and chroma are not supported", source->name,
+                              e->name.str);
     }
     return SHEEN_OK;
 }
 
-/** Grows the chunk's pixels and prepares the pipeline for it. */
-static exr_result_t prepare_chunk(const ExrPart *part, ExrChunk *chunk, const exr_chunk_info_t *info)
+/** @return the value of a half; exact. Source: ieee754, binary16. */
+static float half_to_float(uint16_t h)
 {
-    size_t n = (size_t)info->width * (size_t)info->height;
-    if (n > chunk->capacity) {
-        free(chunk->pixels);
-        chunk->capacity = 0;
-        chunk->pixels = n <= SHEEN_IMAGE_MAX_PIXELS ? malloc(n * sizeof *chunk->pixels) : NULL;
-        if (!chunk->pixels) return EXR_ERR_OUT_OF_MEMORY;
-        chunk->capacity = n;
+    int exponent = h >> 10 & 31;
+    float mantissa = (float)(h & 1023), sign = h & 0x8000 ? -1.0f : 1.0f;
+    if (exponent == 31) return mantissa > 0.0f ? NAN : sign * INFINITY;
+    return exponent == 0 ? sign * mantissa * 0x1p-24f : sign * ldexpf(mantissa + 1024.0f, exponent - 25);
+}
+
+static float load_value(const uint8_t *p, uint16_t type)
+{
+    if (type == EXR_PIXEL_HALF) return half_to_float((uint16_t)(p[0] | p[1] << 8));
+    uint32_t bits = (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
+    if (type == EXR_PIXEL_UINT) return (float)bits;
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/** Takes one channel of one line of a chunk, whose first pixel goes to row[left], as component c. */
+static void place_line(const uint8_t *line, const exr_coding_channel_info_t *channel, int64_t left, Rgb *row,
+                       int64_t width, int c)
+{
+    for (int64_t x = left < 0 ? -left : 0; x < channel->width && left + x < width; ++x)
+        (&row[left + x].r)[c] = load_value(line + x * channel->bytes_per_element, channel->data_type);
+}
+
+/**
+ * The last stage of the pipeline. The library has its own, whose fast ways write through the null pointers of channels
+ * that nobody asked for.
+ */
+static exr_result_t unpack(exr_decode_pipeline_t *pipeline)
+{
+    const ExrTarget *target = pipeline->decoding_user_data;
+    const ExrPart *part = target->part;
+    SheenImage *out = target->out;
+    int64_t left = (int64_t)part->data.min.x + target->x - part->display.min.x;
+    int64_t top = (int64_t)part->data.min.y + target->y - part->display.min.y;
+    // Line by line, in each the channels one after another.
+    const uint8_t *line = pipeline->unpacked_buffer;
+    uint64_t size_left = pipeline->chunk.unpacked_size;
+    for (int64_t y = top; y < top + pipeline->chunk.height; ++y) {
+        for (int i = 0; i < pipeline->channel_count; ++i) {
+            const exr_coding_channel_info_t *channel = &pipeline->channels[i];
+            uint64_t size = (uint64_t)channel->width * (uint64_t)channel->bytes_per_element;
+            if (!line || size > size_left) return EXR_ERR_CORRUPT_CHUNK;
+            for (int c = 0; c < 3 && y >= 0 && y < out->height; ++c) {
+                if (!part->channels[c] || strcmp(part->channels[c], channel->channel_name) != 0) continue;
+                place_line(line, channel, left, out->pixels + (size_t)y * out->width, out->width, c);
+            }
+            line += size;
+            size_left -= size;
+        }
     }
-    memset(chunk->pixels, 0, n * sizeof *chunk->pixels); // a missing channel is zero
-    exr_decode_pipeline_t *pipeline = &chunk->pipeline;
-    bool first = !chunk->ready;
-    exr_result_t result = first ? exr_decoding_initialize(part->context, part->index, info, pipeline)
-                                : exr_decoding_update(part->context, part->index, info, pipeline);
+    return EXR_ERR_SUCCESS;
+}
+
+static exr_result_t decode_chunk(exr_decode_pipeline_t *pipeline, ExrTarget *target, const exr_chunk_info_t *info)
+{
+    const ExrPart *part = target->part;
+    exr_result_t result;
+    if (pipeline->channels) {
+        result = exr_decoding_update(part->context, part->index, info, pipeline);
+    } else {
+        result = exr_decoding_initialize(part->context, part->index, info, pipeline);
+        if (!result) result = exr_decoding_choose_default_routines(part->context, part->index, pipeline);
+    }
     if (result) return result;
-    chunk->ready = true;
-    for (int i = 0; i < pipeline->channel_count; ++i) {
-        exr_coding_channel_info_t *channel = &pipeline->channels[i];
-        channel->decode_to_ptr = NULL;
-        for (int c = 0; c < 3; ++c) {
-            if (!part->channels[c] || strcmp(part->channels[c], channel->channel_name) != 0) continue;
-            channel->decode_to_ptr = (uint8_t *)(&chunk->pixels->r + c);
-            channel->user_bytes_per_element = sizeof(float);
-            channel->user_data_type = EXR_PIXEL_FLOAT;
-            channel->user_pixel_stride = (int32_t)sizeof(Rgb);
-            channel->user_line_stride = (int32_t)((size_t)info->width * sizeof(Rgb));
-        }
-    }
-    return first ? exr_decoding_choose_default_routines(part->context, part->index, pipeline) : EXR_ERR_SUCCESS;
+    pipeline->decoding_user_data = target;
+    pipeline->unpack_and_convert_fn = unpack;
+    return exr_decoding_run(part->context, part->index, pipeline);
 }
 
-/** Copies a chunk whose first pixel is (x0, y0) of the data window into the display window. */
-static void place_chunk(const ExrPart *part, const ExrChunk *chunk, const exr_chunk_info_t *info, int64_t x0,
-                        int64_t y0, SheenImage *out)
+static exr_result_t decode_scanlines(exr_decode_pipeline_t *pipeline, ExrTarget *target)
 {
-    int64_t left = (int64_t)part->data.min.x + x0 - part->display.min.x;
-    int64_t top = (int64_t)part->data.min.y + y0 - part->display.min.y;
-    for (int64_t y = 0; y < info->height; ++y) {
-        if (top + y < 0 || top + y >= out->height) continue;
-        const Rgb *from = chunk->pixels + y * info->width;
-        Rgb *row = out->pixels + (size_t)(top + y) * out->width;
-        for (int64_t x = 0; x < info->width; ++x) {
-            if (left + x < 0 || left + x >= out->width) continue;
-            row[left + x] = part->gray ? (Rgb){from[x].r, from[x].r, from[x].r} : from[x];
-        }
-    }
-}
-
-static exr_result_t decode_chunk(const ExrPart *part, ExrChunk *chunk, const exr_chunk_info_t *info, int64_t x0,
-                                 int64_t y0, SheenImage *out)
-{
-    exr_result_t result = prepare_chunk(part, chunk, info);
-    if (!result) result = exr_decoding_run(part->context, part->index, &chunk->pipeline);
-    if (!result) place_chunk(part, chunk, info, x0, y0, out);
-    return result;
-}
-
-static exr_result_t decode_scanlines(const ExrPart *part, ExrChunk *chunk, SheenImage *out)
-{
+    const ExrPart *part = target->part;
     int32_t lines = 0;
     exr_result_t result = exr_get_scanlines_per_chunk(part->context, part->index, &lines);
-    for (int64_t y = 0; !result && y < box_height(part->data); y += lines) {
+    for (; !result && target->y < box_height(part->data); target->y += lines) {
         exr_chunk_info_t info;
-        result = exr_read_scanline_chunk_info(part->context, part->index, (int)(part->data.min.y + y), &info);
-        if (!result) result = decode_chunk(part, chunk, &info, 0, y, out);
+        int y = (int)(part->data.min.y + target->y);
+        result = exr_read_scanline_chunk_info(part->context, part->index, y, &info);
+        if (!result) result = decode_chunk(pipeline, target, &info);
     }
     return result;
 }
 
-static exr_result_t decode_tiles(const ExrPart *part, ExrChunk *chunk, SheenImage *out)
+/** Reads the largest level. */
+static exr_result_t decode_tiles(exr_decode_pipeline_t *pipeline, ExrTarget *target)
 {
+    const ExrPart *part = target->part;
     int32_t tile_w = 0, tile_h = 0;
     exr_result_t result = exr_get_tile_sizes(part->context, part->index, 0, 0, &tile_w, &tile_h);
     if (!result && (tile_w <= 0 || tile_h <= 0)) result = EXR_ERR_INVALID_ATTR;
-    for (int y = 0; !result && (int64_t)y * tile_h < box_height(part->data); ++y) {
-        for (int x = 0; !result && (int64_t)x * tile_w < box_width(part->data); ++x) {
+    for (int v = 0; !result && (int64_t)v * tile_h < box_height(part->data); ++v) {
+        for (int u = 0; !result && (int64_t)u * tile_w < box_width(part->data); ++u) {
             exr_chunk_info_t info;
-            result = exr_read_tile_chunk_info(part->context, part->index, x, y, 0, 0, &info);
-            if (!result) result = decode_chunk(part, chunk, &info, (int64_t)x * tile_w, (int64_t)y * tile_h, out);
+            target->x = (int64_t)u * tile_w;
+            target->y = (int64_t)v * tile_h;
+            result = exr_read_tile_chunk_info(part->context, part->index, u, v, 0, 0, &info);
+            if (!result) result = decode_chunk(pipeline, target, &info);
         }
     }
     return result;
+}
+
+static void spread_gray(SheenImage *image)
+{
+    for (size_t i = 0; i < (size_t)image->width * image->height; ++i)
+        image->pixels[i].g = image->pixels[i].b = image->pixels[i].r;
 }
 
 /** OpenEXRCore 3.1 cannot decompress DWA, and puts the channels of B44 in the wrong order unless all are half. */
@@ -229,12 +252,13 @@ SheenStatus sheen_exr_decode(const ImageSource *source, SheenImage *out)
     if (!status)
         status = sheen_image_alloc(source, (uint64_t)box_width(part.display), (uint64_t)box_height(part.display), out);
     if (!status) {
-        ExrChunk chunk = {0};
+        exr_decode_pipeline_t pipeline = EXR_DECODE_PIPELINE_INITIALIZER;
+        ExrTarget target = {.part = &part, .out = out};
         result =
-            part.storage == EXR_STORAGE_TILED ? decode_tiles(&part, &chunk, out) : decode_scanlines(&part, &chunk, out);
+            part.storage == EXR_STORAGE_TILED ? decode_tiles(&pipeline, &target) : decode_scanlines(&pipeline, &target);
         if (result) status = sheen_exr_fail(&stream, result, source->name, source->log);
-        if (chunk.ready) exr_decoding_destroy(part.context, &chunk.pipeline);
-        free(chunk.pixels);
+        if (part.gray) spread_gray(out);
+        exr_decoding_destroy(part.context, &pipeline);
     }
     exr_finish(&part.context);
     return status;

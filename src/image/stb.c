@@ -76,6 +76,9 @@ static SheenStatus stb_decode_bytes(const ImageSource *source, ImageBytes *out)
         return sheen_fail(source->log, SHEEN_ERR_PARSE, "%s: a broken or unsupported header", source->name);
     SheenStatus status = sheen_image_check_size(source, (uint64_t)width, (uint64_t)height);
     if (status) return status;
+    // A run of 128 pixels takes two bytes at least, and stb fills what is missing, patiently, with black.
+    if ((uint64_t)width * (uint64_t)height / 64 > source->size)
+        return sheen_fail(source->log, SHEEN_ERR_PARSE, "%s: the file ends before the picture does", source->name);
     feed = (Feed){.source = source};
     uint8_t *pixels = stbi_load_from_callbacks(&feed_callbacks, &feed, &width, &height, &channels, 3);
     if (pixels && !feed.starved) {
