@@ -7,7 +7,7 @@
 #include <stdarg.h>
 #include <string.h>
 
-const Command *const cli_commands[] = {&command_render, &command_info, &command_help, NULL};
+const Command *const cli_commands[] = {&command_render, &command_compare, &command_info, &command_help, NULL};
 
 // Commands that are known but not in this version.
 static const char *const later_commands[] = {"animate", "view", NULL};

@@ -44,6 +44,11 @@ bool sheen_image_writable_format(const char *path)
     return format && format->encode;
 }
 
+bool sheen_image_readable_format(const char *path)
+{
+    return format_of_ending(path) != NULL;
+}
+
 bool sheen_image_is_8bit(const char *path)
 {
     const ImageFormat *format = format_of_ending(path);
@@ -175,21 +180,38 @@ SheenStatus sheen_image_read_bytes(const char *path, const SheenLog *log, uint32
     return SHEEN_OK;
 }
 
-SheenStatus sheen_image_write(const char *path, const SheenImageView *view, float exposure, const SheenLog *log)
+SheenStatus sheen_image_encode(const char *name, const SheenImageView *view, float exposure, const SheenLog *log,
+                               uint8_t **data, size_t *size)
 {
-    const ImageFormat *format = format_of_ending(path);
+    *data = NULL;
+    *size = 0;
+    const ImageFormat *format = format_of_ending(name);
     if (!format || !format->encode)
         return sheen_fail(log, SHEEN_ERR_UNSUPPORTED,
-                          "%s: a picture is written as .exr, .hdr, .pfm or .png, by the ending of its name", path);
+                          "%s: a picture is written as .exr, .hdr, .pfm or .png, by the ending of its name", name);
     if (view->width == 0 || view->height == 0 || view->width > SHEEN_IMAGE_MAX_SIDE ||
         view->height > SHEEN_IMAGE_MAX_SIDE || (uint64_t)view->width * view->height > SHEEN_IMAGE_MAX_PIXELS)
-        return sheen_fail(log, SHEEN_ERR_INVALID, "%s: a picture of %u x %u pixels cannot be written", path,
+        return sheen_fail(log, SHEEN_ERR_INVALID, "%s: a picture of %u x %u pixels cannot be written", name,
                           view->width, view->height);
-    ImageTarget target = {view, exposure, path, log};
+    ImageTarget target = {view, exposure, name, log};
     ImageBuffer buffer = {0};
     SheenStatus status = format->encode(&target, &buffer);
-    if (!status) status = sheen_file_write(path, buffer.data, buffer.size, log);
-    free(buffer.data);
+    if (status) {
+        free(buffer.data);
+        return status;
+    }
+    *data = buffer.data;
+    *size = buffer.size;
+    return SHEEN_OK;
+}
+
+SheenStatus sheen_image_write(const char *path, const SheenImageView *view, float exposure, const SheenLog *log)
+{
+    uint8_t *data;
+    size_t size;
+    SheenStatus status = sheen_image_encode(path, view, exposure, log, &data, &size);
+    if (!status) status = sheen_file_write(path, data, size, log);
+    free(data);
     return status;
 }
 

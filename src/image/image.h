@@ -51,8 +51,19 @@ typedef struct SheenImage {
 SHEEN_NODISCARD SheenStatus sheen_image_write(const char *path, const SheenImageView *view, float exposure,
                                               const SheenLog *log);
 
+/**
+ * The same into memory.
+ * @param name  its ending chooses the format; for messages too
+ * @param data  from malloc, owned by the caller; NULL on failure
+ */
+SHEEN_NODISCARD SheenStatus sheen_image_encode(const char *name, const SheenImageView *view, float exposure,
+                                               const SheenLog *log, uint8_t **data, size_t *size);
+
 /** @return true when sheen_image_write knows the ending of the path. */
 bool sheen_image_writable_format(const char *path);
+
+/** @return true when the path has the ending of a format that sheen_image_read knows. */
+bool sheen_image_readable_format(const char *path);
 
 /**
  * Reads .exr, .hdr, .pfm (linear) or .png, .jpg, .tga, .bmp (8-bit, decoded from sRGB to linear); gray is spread to

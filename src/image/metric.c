@@ -113,6 +113,25 @@ SheenStatus sheen_metrics_compute(const SheenImage *reference, const SheenImage 
     m.mae = s.absolute / n;
     m.psnr = 10.0 * log10((double)s.peak * (double)s.peak / m.mse);
     m.bias = s.x == s.r && s.n > 0 ? 0.0 : s.x / s.r - 1.0; // black equals black
+    m.mean = s.x / n;
+    m.reference_mean = s.r / n;
+    m.peak = (double)s.peak;
     *out = m;
     return SHEEN_OK;
+}
+
+double sheen_metrics_flicker(const SheenImage reference[2], const SheenImage image[2])
+{
+    const float *r0 = &reference[0].pixels->r, *r1 = &reference[1].pixels->r;
+    const float *x0 = &image[0].pixels->r, *x1 = &image[1].pixels->r;
+    size_t n = (size_t)image->width * image->height * 3;
+    double sum = 0.0;
+    uint64_t count = 0;
+    for (size_t i = 0; i < n; ++i) {
+        double change = ((double)x1[i] - (double)x0[i]) - ((double)r1[i] - (double)r0[i]);
+        if (!isfinite(change)) continue;
+        sum += fabs(change) / ((double)maxf(r0[i], 0.0f) + 0.1);
+        ++count;
+    }
+    return sum / (double)count;
 }

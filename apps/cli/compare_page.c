@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compare_page.h"
+
+#include "cli.h"
+#include "compare_script.h"
+#include "output.h"
+#include "text_buffer.h"
+
+#include "image/flip.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { max_operands = 4096 }; // of one command line; more is not a page to look at
+
+/** One operand: its worst frame, encoded for the page. */
+typedef struct PageEntry {
+    const char *name;
+    char *figures; // "mse 0.1, ..." as table cells, once finished
+    long frame;
+    double flip;
+    uint32_t width, height;
+    TextBuffer reference_png, image_png, error_png; // base 64
+    TextBuffer reference_hdr, image_hdr;            // base 64
+} PageEntry;
+
+struct ComparePage {
+    const char *path, *reference;
+    SheenLog log;
+    PageEntry *entries; // the last is not finished while `open`
+    size_t n;
+    bool open;
+};
+
+ComparePage *compare_page_create(const char *path, const char *reference, SheenLog log)
+{
+    ComparePage *page = calloc(1, sizeof *page);
+    if (page) *page = (ComparePage){.path = path, .reference = reference, .log = log};
+    return page;
+}
+
+static void entry_clear_pictures(PageEntry *e)
+{
+    text_free(&e->reference_png);
+    text_free(&e->image_png);
+    text_free(&e->error_png);
+    text_free(&e->reference_hdr);
+    text_free(&e->image_hdr);
+}
+
+void compare_page_destroy(ComparePage **page)
+{
+    if (!*page) return;
+    for (size_t i = 0; i < (*page)->n; ++i) {
+        entry_clear_pictures(&(*page)->entries[i]);
+        free((*page)->entries[i].figures);
+    }
+    free((*page)->entries);
+    free(*page);
+    *page = NULL;
+}
+
+/** Encodes pixels in base 64. @param format  a name with the ending of the format */
+static SheenStatus encode(const ComparePage *page, const char *format, uint32_t width, uint32_t height,
+                          const Rgb *pixels, TextBuffer *out)
+{
+    SheenImageView view = {.width = width, .height = height, .pixels = pixels};
+    uint8_t *data;
+    size_t size;
+    SheenStatus status = sheen_image_encode(format, &view, 0.0f, &page->log, &data, &size);
+    if (status) return status;
+    text_add_base64(out, data, size);
+    free(data);
+    return out->failed ? sheen_fail(&page->log, SHEEN_ERR_NOMEM, "%s: out of memory", page->path) : SHEEN_OK;
+}
+
+/** Black over purple and orange to a pale yellow: its lightness rises evenly with the error. */
+static Rgb error_color(float error)
+{
+    static const float keys[5][3] = {{0, 0, 4}, {81, 18, 124}, {183, 55, 121}, {252, 137, 97}, {252, 253, 191}};
+    float at = 4.0f * clampf(error, 0.0f, 1.0f);
+    int i = at < 3.0f ? (int)at : 3;
+    float t = at - (float)i, c[3];
+    for (int k = 0; k < 3; ++k) c[k] = sheen_srgb_decode(lerpf(keys[i][k], keys[i + 1][k], t) / 255.0f);
+    return (Rgb){c[0], c[1], c[2]};
+}
+
+/** A copy in which what is not finite is black, as the figures see it. */
+static Rgb *finite_pixels(const SheenImage *image)
+{
+    size_t n = (size_t)image->width * image->height;
+    Rgb *pixels = calloc(n, sizeof *pixels);
+    for (size_t i = 0; pixels && i < n; ++i) {
+        Rgb c = image->pixels[i];
+        if (isfinite(c.r) && isfinite(c.g) && isfinite(c.b)) pixels[i] = c;
+    }
+    return pixels;
+}
+
+/** Encodes the map of HDR-FLIP. */
+static SheenStatus encode_error(const ComparePage *page, const SheenImage *reference, const SheenImage *image,
+                                TextBuffer *out)
+{
+    size_t n = (size_t)image->width * image->height;
+    float *map = malloc(n * sizeof *map);
+    SheenImage r = {reference->width, reference->height, finite_pixels(reference)};
+    SheenImage x = {image->width, image->height, finite_pixels(image)};
+    SheenStatus status = SHEEN_OK;
+    if (!map || !r.pixels || !x.pixels)
+        status = sheen_fail(&page->log, SHEEN_ERR_NOMEM, "%s: out of memory", page->path);
+    SheenFlipExposures exposures;
+    if (!status) status = sheen_flip_exposures(&r, &page->log, &exposures);
+    if (!status) status = sheen_flip_compute(&r, &x, &exposures, &page->log, map);
+    for (size_t i = 0; !status && i < n; ++i) x.pixels[i] = error_color(map[i]);
+    if (!status) status = encode(page, "picture.png", x.width, x.height, x.pixels, out);
+    free(map);
+    sheen_image_free(&r);
+    sheen_image_free(&x);
+    return status;
+}
+
+/** @return the entry of the operand, a new one if it is offered for the first time; NULL when there is no room. */
+static PageEntry *open_entry(ComparePage *page)
+{
+    if (page->open) return &page->entries[page->n - 1];
+    PageEntry *grown = page->n < max_operands ? realloc(page->entries, (page->n + 1) * sizeof *grown) : NULL;
+    if (!grown) return NULL;
+    page->entries = grown;
+    page->open = true;
+    grown[page->n] = (PageEntry){.flip = -1.0};
+    return &grown[page->n++];
+}
+
+SheenStatus compare_page_offer(ComparePage *page, const char *name, long frame, const SheenImage *reference,
+                               const SheenImage *image, const SheenMetrics *figures)
+{
+    PageEntry *e = open_entry(page);
+    if (!e) return sheen_fail(&page->log, SHEEN_ERR_NOMEM, "%s: out of memory", page->path);
+    double flip = isfinite(figures->flip) ? figures->flip : 0.0;
+    if (flip <= e->flip) return SHEEN_OK;
+    entry_clear_pictures(e);
+    e->name = name;
+    e->frame = frame;
+    e->flip = flip;
+    e->width = image->width;
+    e->height = image->height;
+    uint32_t w = image->width, h = image->height;
+    SheenStatus status = encode(page, "picture.png", w, h, reference->pixels, &e->reference_png);
+    if (!status) status = encode(page, "picture.png", w, h, image->pixels, &e->image_png);
+    if (!status) status = encode(page, "picture.hdr", w, h, reference->pixels, &e->reference_hdr);
+    if (!status) status = encode(page, "picture.hdr", w, h, image->pixels, &e->image_hdr);
+    return status ? status : encode_error(page, reference, image, &e->error_png);
+}
+
+static const char *const figure_names[] = {"mse",  "rmse", "relmse", "mae",       "psnr",
+                                           "flip", "ssim", "bias",   "nonfinite", "flicker"};
+enum { n_figures = sizeof figure_names / sizeof figure_names[0] };
+
+void compare_page_finish(ComparePage *page, json_t *result)
+{
+    page->open = false;
+    TextBuffer cells = {0};
+    for (int i = 0; i < n_figures; ++i) {
+        const json_t *value = json_object_get(result, figure_names[i]);
+        if (json_is_number(value))
+            text_add_format(&cells, "<td>%.5g</td>", json_number_value(value));
+        else
+            text_add(&cells, "<td>-</td>");
+    }
+    page->entries[page->n - 1].figures = cells.text; // NULL when out of memory: an empty row
+}
+
+static void add_lines(TextBuffer *out, const char *const lines[])
+{
+    for (; *lines; ++lines) {
+        text_add(out, *lines);
+        text_add(out, "\n");
+    }
+}
+
+static void add_name(TextBuffer *out, const ComparePage *page, const PageEntry *e)
+{
+    text_add_escaped(out, e->name);
+    if (page->entries[0].frame != e->frame || e->frame != 0) text_add_format(out, ", frame %ld", e->frame);
+}
+
+static void add_picture(TextBuffer *out, const char *role, const char *caption, const TextBuffer *png)
+{
+    text_add_format(out, "<figure><img class=\"%s\" alt=\"%s\" src=\"data:image/png;base64,", role, caption);
+    text_add(out, png->text);
+    text_add_format(out, "\"><figcaption>%s</figcaption></figure>\n", caption);
+}
+
+static void add_entry(TextBuffer *out, const ComparePage *page, const PageEntry *e)
+{
+    text_add_format(out, "<section data-width=\"%u\" data-height=\"%u\">\n<h2>", e->width, e->height);
+    add_name(out, page, e);
+    text_add(out, "</h2>\n<div class=\"row\">\n");
+    add_picture(out, "reference", "reference", &e->reference_png);
+    add_picture(out, "image", "image", &e->image_png);
+    add_picture(out, "error", "error (FLIP, 0 black to 1 yellow)", &e->error_png);
+    text_add(out, "</div>\n<script type=\"text/plain\" class=\"reference-hdr\">");
+    // Usually all have one reference: the script takes the first where this is empty.
+    bool same = e != page->entries && strcmp(e->reference_hdr.text, page->entries[0].reference_hdr.text) == 0;
+    text_add(out, same ? "" : e->reference_hdr.text);
+    text_add(out, "</script>\n<script type=\"text/plain\" class=\"image-hdr\">");
+    text_add(out, e->image_hdr.text);
+    text_add(out, "</script>\n</section>\n");
+}
+
+static void add_table(TextBuffer *out, const ComparePage *page)
+{
+    text_add(out, "<table>\n<tr><th>image</th>");
+    for (int i = 0; i < n_figures; ++i) text_add_format(out, "<th>%s</th>", figure_names[i]);
+    text_add(out, "</tr>\n");
+    for (size_t i = 0; i < page->n; ++i) {
+        text_add(out, "<tr><th>");
+        text_add_escaped(out, page->entries[i].name);
+        text_add(out, "</th>");
+        text_add(out, page->entries[i].figures ? page->entries[i].figures : "");
+        text_add(out, "</tr>\n");
+    }
+    text_add(out, "</table>\n");
+}
+
+bool compare_page_write(ComparePage *page)
+{
+    TextBuffer out = {0};
+    text_add(&out, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>");
+    text_add_escaped(&out, page->reference);
+    text_add(&out, "</title>\n<style>\n");
+    add_lines(&out, compare_style);
+    text_add(&out, "</style>\n</head>\n<body>\n<h1>Compared with ");
+    text_add_escaped(&out, page->reference);
+    text_add(&out, "</h1>\n");
+    add_table(&out, page);
+    add_lines(&out, compare_controls);
+    for (size_t i = 0; i < page->n; ++i) add_entry(&out, page, &page->entries[i]);
+    text_add(&out, "<script>\n");
+    add_lines(&out, compare_script);
+    text_add(&out, "</script>\n</body>\n</html>");
+    bool ok = false;
+    if (out.failed)
+        cli_error("%s: out of memory", page->path);
+    else
+        ok = output_write_text(page->path, out.text);
+    text_free(&out);
+    return ok;
+}

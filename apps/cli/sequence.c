@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence.h"
+
+#include "cli.h"
+
+#include "image/image.h"
+
+#include <ctype.h>
+#include <dirent.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { max_digits = 9 }; // so that a number fits into a long everywhere
+
+static bool is_folder(const char *path)
+{
+    struct stat s;
+    return stat(path, &s) == 0 && S_ISDIR(s.st_mode);
+}
+
+static const char *last_part(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+bool sequence_is(const char *path)
+{
+    struct stat s;
+    if (stat(path, &s) == 0) return S_ISDIR(s.st_mode);
+    return strchr(last_part(path), '#') != NULL;
+}
+
+/** Matches a name with a pattern of one run of '#', which stands for as many digits, or more. */
+static bool match_pattern(const char *pattern, const char *name, long *number)
+{
+    size_t before = strcspn(pattern, "#"), digits = 0, hashes = strspn(pattern + before, "#");
+    if (strncmp(pattern, name, before) != 0) return false;
+    const char *first = name + before;
+    while (isdigit((unsigned char)first[digits])) ++digits;
+    // 0001 to 9999 and 10000, but not 00001.
+    if (digits < hashes || digits > max_digits || (digits > hashes && first[0] == '0')) return false;
+    *number = strtol(first, NULL, 10);
+    return strcmp(first + digits, pattern + before + hashes) == 0;
+}
+
+/** Takes the last run of digits before the ending. @return false when there is none. */
+static bool last_number(const char *name, long *number)
+{
+    const char *end = strrchr(name, '.');
+    if (!end) end = name + strlen(name);
+    while (end > name && !isdigit((unsigned char)end[-1])) --end;
+    const char *first = end;
+    while (first > name && isdigit((unsigned char)first[-1]) && end - first < max_digits) --first;
+    *number = strtol(first, NULL, 10);
+    return first < end;
+}
+
+static bool add_frame(Sequence *s, const char *folder, size_t folder_size, const char *name, long number)
+{
+    SequenceFrame *grown = realloc(s->frames, (s->n + 1) * sizeof *grown);
+    if (!grown) return false;
+    s->frames = grown;
+    size_t size = folder_size + strlen(name) + 1;
+    char *path = malloc(size);
+    if (!path) return false;
+    memcpy(path, folder, folder_size);
+    memcpy(path + folder_size, name, size - folder_size);
+    s->frames[s->n++] = (SequenceFrame){path, number};
+    return true;
+}
+
+static int by_path(const void *a, const void *b)
+{
+    return strcmp(((const SequenceFrame *)a)->path, ((const SequenceFrame *)b)->path);
+}
+
+static int by_number(const void *a, const void *b)
+{
+    long x = ((const SequenceFrame *)a)->number, y = ((const SequenceFrame *)b)->number;
+    return x != y ? (x > y) - (x < y) : by_path(a, b);
+}
+
+/** Collects the files. @param pattern  NULL takes all pictures; @param numbered  becomes false if a name has no number
+ */
+static bool collect(const char *path, const char *folder, size_t folder_size, const char *pattern, Sequence *out,
+                    bool *numbered)
+{
+    char *name = folder_size ? strndup(folder, folder_size) : strdup(".");
+    DIR *dir = name ? opendir(name) : NULL;
+    free(name);
+    if (!dir) {
+        cli_error("%s: %s", path, strerror(errno));
+        return false;
+    }
+    bool ok = true;
+    for (struct dirent *e; ok && (e = readdir(dir));) {
+        long number = 0;
+        if (pattern ? !match_pattern(pattern, e->d_name, &number)
+                    : e->d_name[0] == '.' || !sheen_image_readable_format(e->d_name))
+            continue;
+        if (!pattern && !last_number(e->d_name, &number)) *numbered = false;
+        ok = add_frame(out, folder, folder_size, e->d_name, number);
+    }
+    closedir(dir);
+    if (!ok) cli_error("%s: out of memory", path);
+    return ok;
+}
+
+bool sequence_list(const char *path, Sequence *out)
+{
+    *out = (Sequence){0};
+    bool numbered = true, ok;
+    if (is_folder(path)) {
+        size_t n = strlen(path);
+        char *folder = malloc(n + 2);
+        if (!folder) {
+            cli_error("%s: out of memory", path);
+            return false;
+        }
+        memcpy(folder, path, n + 1);
+        if (folder[n - 1] != '/') folder[n++] = '/';
+        ok = collect(path, folder, n, NULL, out, &numbered);
+        free(folder);
+    } else {
+        const char *pattern = last_part(path);
+        ok = collect(path, path, (size_t)(pattern - path), pattern, out, &numbered);
+    }
+    if (!ok) return false;
+    if (out->n == 0) {
+        cli_error("%s: there are no pictures", path);
+        return false;
+    }
+    if (!numbered) {
+        qsort(out->frames, out->n, sizeof *out->frames, by_path);
+        for (size_t i = 0; i < out->n; ++i) out->frames[i].number = (long)i;
+    }
+    qsort(out->frames, out->n, sizeof *out->frames, by_number);
+    for (size_t i = 1; i < out->n; ++i) {
+        if (out->frames[i].number != out->frames[i - 1].number) continue;
+        cli_error("%s: both '%s' and '%s' are frame %ld", path, last_part(out->frames[i - 1].path),
+                  last_part(out->frames[i].path), out->frames[i].number);
+        return false;
+    }
+    return true;
+}
+
+void sequence_free(Sequence *sequence)
+{
+    for (size_t i = 0; i < sequence->n; ++i) free(sequence->frames[i].path);
+    free(sequence->frames);
+    *sequence = (Sequence){0};
+}

@@ -1,0 +1,83 @@
+#!/bin/bash
+# sheen compare: its JSON, animations, the page, and what it refuses. The pictures are the seeds of the fuzz target,
+# 8 x 6 pixels each.
+. "$(dirname "$0")/check.sh"
+P="$SOURCE/fuzz/corpus/image"
+
+# value KEY: the number of the first line with the key in out, without the comma.
+value() { sed -n "s/^ *\"$1\": \([^,]*\),\{0,1\}$/\1/p" out | head -n 1; }
+# is KEY LOW HIGH: the value lies between; awk takes no null for a number.
+is() {
+    value "$1" | awk -v lo="$2" -v hi="$3" '{ n++; if ($1 ~ /[a-z]/ || $1 < lo || $1 > hi) bad = 1 } END { exit bad || !n }' ||
+        fail "$1 is $(value "$1") and not in [$2, $3]"
+    n_checks=$((n_checks + 1))
+}
+
+# One object for one image, with every key; null where a figure is infinite.
+expect 0 compare "$P/plain.hdr" "$P/zip_half.exr"; silent
+[ "$(head -c 1 out)" = "{" ] || fail "one image does not give one object"
+[ "$(grep -o '"[a-z]*":' out | tr -d '":' | tr '\n' ' ')" = "image mse rmse relmse mae psnr flip ssim bias nonfinite " ] ||
+    fail "the keys are not those of the manual"
+[ "$(value psnr)" = null ] || fail "psnr of equal pictures is not null"
+is mse 0 0; is relmse 0 0; is flip 0 0; is ssim 1 1; is bias 0 0; is nonfinite 0 0
+
+# repeat.hdr holds the first column of plain.hdr in all columns: red is 0 instead of x / 8.
+# mse = mean((x / 8)^2) / 3 = 140 / 64 / 8 / 3 = 0.0911458, mae = 28 / 8 / 8 / 3 = 0.1458333,
+# bias = mean(0, 5/16, 1/2) / mean(7/16, 5/16, 1/2) - 1 = -0.35, psnr against the peak 7 / 8.
+expect 0 compare "$P/plain.hdr" "$P/repeat.hdr"; silent
+is mse 0.0911458 0.0911459; is rmse 0.301903 0.301904; is mae 0.145833 0.145834; is bias -0.350001 -0.349999
+is psnr 9.24279 9.24280; is flip 0.1 1; is ssim 0 0.99
+
+# Several images: an array in their order; formats mix.
+expect 0 compare "$P/rgb8.png" "$P/rgb.jpg" "$P/rgb.tga"; silent
+[ "$(head -c 1 out)" = "[" ] || fail "two images do not give an array"
+[ "$(grep -c '"image"' out)" -eq 2 ] || fail "two images do not give two objects"
+grep '"image"' out | head -n 1 | grep -q 'rgb.jpg' || fail "the images are not in the order of the command line"
+is flip 0.0001 0.1
+
+# Animations: folders and patterns, matched by number. Frame 2 differs as above and comes back in frame 3, so that in
+# red |x' - x| is x / 8 twice, over (x / 8 + 0.1): flicker = sum over x of (x / 8) / (x / 8 + 0.1), / 8 / 3 = 0.2306.
+mkdir ref own
+for i in 1 2 3; do cp "$P/plain.hdr" "ref/r.000$i.hdr"; cp "$P/runs.hdr" "own/frame-$i.hdr"; done
+cp "$P/repeat.hdr" own/frame-2.hdr
+echo "not a picture" >own/notes.txt
+expect 0 compare ref own; silent; mv out folders
+expect 0 compare 'ref/r.####.hdr' own/; silent
+diff <(grep -v '"image"' folders) <(grep -v '"image"' out) || fail "a pattern and its folder differ"
+is mse 0.0303819 0.0303820; is flicker 0.23060 0.23061; is bias -0.116667 -0.116666
+[ "$(grep -c '"frame":' out)" -eq 3 ] || fail "not one object for each frame"
+rm own/frame-2.hdr
+expect 1 compare ref own; says '^sheen: own: frame 2 is not there'
+cp "$P/plain.hdr" own/2.hdr; cp "$P/plain.hdr" own/x2.hdr
+expect 1 compare ref own; says '^sheen: own: both .2.hdr. and .x2.hdr. are frame 2'
+rm own/*2.hdr; cp "$P/zip_step.exr" own/2.exr
+expect 1 compare ref own; says '^sheen: own/2.exr: 40 x 32 pixels'
+expect 1 compare ref 'own/####.exr'; says '^sheen: own/####.exr: there are no pictures'
+
+# The page: one file with everything in it, nothing from elsewhere, names harmless.
+cp "$P/repeat.hdr" '<b>&.hdr'
+expect 0 compare --html page.html "$P/plain.hdr" '<b>&.hdr' "$P/rle_half.exr"; silent
+[ "$(grep -c 'data:image/png;base64,iVBOR' page.html)" -eq 6 ] || fail "not three PNG pictures for each image"
+[ "$(grep -c '"image-hdr">Iz9SQURJQU5DR' page.html)" -eq 2 ] || fail "not the values of each image"
+grep -q '&lt;b&gt;&amp;.hdr' page.html || fail "a name is not escaped"
+grep -q "<b>" page.html && fail "a name is not escaped"
+grep -Eq 'https?://|src="[^d]|<link' page.html && fail "the page wants something from elsewhere"
+grep -q '<td>0.091146</td>' page.html || fail "the figures are not on the page"
+mv out first; expect 0 compare --html page2.html "$P/plain.hdr" '<b>&.hdr' "$P/rle_half.exr"
+{ cmp -s page.html page2.html && cmp -s out first; } || fail "the same pictures gave another page"
+expect 0 compare --html worst.html ref "ref"; silent
+expect 1 compare --html none/page.html "$P/plain.hdr" "$P/repeat.hdr"; says '^sheen: none/page.html: '
+expect 1 compare --html new.html "$P/plain.hdr" "$P/cmyk.jpg"; says 'CMYK'
+[ ! -e new.html ] || fail "a page of half a comparison"
+
+# Refused.
+refused REFERENCE compare
+refused IMAGE compare "$P/plain.hdr"
+refused IMAGE compare ref "$P/plain.hdr"
+refused --nothing compare --nothing "$P/plain.hdr" "$P/plain.hdr"
+expect 1 compare "$P/plain.hdr" missing.exr; says '^sheen: missing.exr: No such file or directory$'; [ ! -s out ] || fail "output"
+expect 1 compare missing.exr ref; says '^sheen: missing.exr: '
+expect 1 compare "$P/plain.hdr" "$P/zip_step.exr"; says '^sheen: .*zip_step.exr: 40 x 32 pixels, but the reference .* has 8 x 6$'
+expect 1 compare "$P/plain.hdr" own/notes.txt; says '^sheen: own/notes.txt: not a picture of a known format$'
+expect 1 compare --strict "$P/layer.exr" "$P/rle_half.exr"; says 'layer'
+passed
