@@ -11,13 +11,13 @@ import sys
 
 import interior_pieces as pieces
 import interior_textures as textures
-from scene_mesh import Mesh, box, ring, rounded_box
+from scene_mesh import Mesh, box, ring, rounded_box, unit
 
 WIDTH, HEIGHT, DEPTH, WALL = 5.4, 2.7, 4.8, 0.25  # x, y, z of the room; thickness of its walls
 WINDOW_Y, WINDOW_Z = (0.85, 2.35), (1.0, 3.0)     # in the wall x = 0
 SKYLIGHT_X, SKYLIGHT_Z = (3.55, 4.4), (3.0, 3.85)  # in the ceiling
 SKY, SUN, BULB = (4.4, 5.1, 6.0), (17, 14.6, 11.2), (105, 70, 37)
-SUN_WAY = (-0.36, -0.8, -0.49)
+SUN_WAY, SUN_DISTANCE = (-0.36, -0.8, -0.49), 40.0
 MIRROR = (2.08, 1.75, 0)
 BULB_PLACE, BULB_RADIUS = (4.98, 1.5, 0.42), 0.035
 
@@ -200,6 +200,10 @@ def spaced(values, digits=6):
     return " ".join(f"{v:.{digits}g}" for v in values)
 
 
+def commas(values):
+    return ", ".join(f"{v:.6g}" for v in values)
+
+
 def xml(shapes):
     colours = [diffuse(n, f'<rgb name="reflectance" value="{spaced(c)}"/>') for n, c in COLOURS.items()]
     colours += [diffuse(n, f"""<texture type="bitmap" name="reflectance">
@@ -207,13 +211,17 @@ def xml(shapes):
             </texture>""") for n in ("planks", "rug", "painting")]
     (y0, y1), (z0, z1) = WINDOW_Y, WINDOW_Z
     halves = f'x="{(z1 - z0) / 2 + 0.002:.6g}" y="{(y1 - y0) / 2 + 0.002:.6g}"'
+    skylight = (sum(SKYLIGHT_X) / 2, HEIGHT, sum(SKYLIGHT_Z) / 2)
+    sun = [c - SUN_DISTANCE * d for c, d in zip(skylight, unit(SUN_WAY))]
     newline = "\n"
     return f"""<?xml version="1.0" encoding="utf-8"?>
 <!--
     A living room by daylight. Written by python/make_interior.py, which also says how it is built.
 
     Light: the sky is a rectangle that fills the outer end of the window, as bright as an overcast sky would be behind
-    it; the sun comes through a skylight above the camera; a bulb burns in the floor lamp's shade.
+    it; the sun comes through a skylight above the camera; a bulb burns in the floor lamp's shade. The sun is a spot
+    light {SUN_DISTANCE:.0f} m away that covers the skylight: a light that the roof hides from all else of the room would be tried in
+    vain everywhere.
 -->
 <scene version="3.0.0">
     <integrator type="path"/>
@@ -266,9 +274,13 @@ def xml(shapes):
             <rgb name="radiance" value="{spaced(SKY)}"/>
         </emitter>
     </shape>
-    <emitter type="directional" id="sun">
-        <vector name="direction" x="{SUN_WAY[0]}" y="{SUN_WAY[1]}" z="{SUN_WAY[2]}"/>
-        <rgb name="irradiance" value="{spaced(SUN)}"/>
+    <emitter type="spot" id="sun">
+        <transform name="to_world">
+            <lookat origin="{commas(sun)}" target="{commas(skylight)}" up="0, 0, 1"/>
+        </transform>
+        <rgb name="intensity" value="{spaced([SUN_DISTANCE ** 2 * c for c in SUN])}"/>
+        <float name="cutoff_angle" value="1.2"/>
+        <float name="beam_width" value="1.15"/>
     </emitter>
     <shape type="sphere" id="bulb">
         <point name="center" x="{BULB_PLACE[0]}" y="{BULB_PLACE[1]}" z="{BULB_PLACE[2]}"/>
