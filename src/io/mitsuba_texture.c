@@ -118,11 +118,12 @@ static SheenTexture read_bitmap(Mitsuba *m, const SheenXml *e)
     return t;
 }
 
+/** Turning v round swaps the fields, so that Mitsuba's second colour is our first. */
 static SheenTexture read_checkerboard(Mitsuba *m, const SheenXml *e)
 {
-    SheenTexture t = sheen_texture_constant(sheen_mi_color(m, e, "color0", MITSUBA_REFLECTANCE, rgb_gray(0.4f)));
+    SheenTexture t = sheen_texture_constant(sheen_mi_color(m, e, "color1", MITSUBA_REFLECTANCE, rgb_gray(0.2f)));
     t.kind = SHEEN_TEXTURE_CHECKERBOARD;
-    t.value2 = sheen_mi_color(m, e, "color1", MITSUBA_REFLECTANCE, rgb_gray(0.2f));
+    t.value2 = sheen_mi_color(m, e, "color0", MITSUBA_REFLECTANCE, rgb_gray(0.4f));
     read_uv_map(m, e, &t);
     return t;
 }

@@ -409,6 +409,21 @@ static void bitmaps_lie_as_in_mitsuba(void **state)
     assert_int_equal(t->wrap, SHEEN_WRAP_CLAMP);
 }
 
+static void checkerboards_lie_as_in_mitsuba(void **state)
+{
+    Kit *k = *state;
+    const SheenTexture *t =
+        &material(k, "3.0.0",
+                  "<bsdf type=\"diffuse\" id=\"m\"><texture type=\"checkerboard\" name=\"reflectance\">"
+                  "<rgb name=\"color0\" value=\"0.9\"/><rgb name=\"color1\" value=\"0.1\"/><transform name=\"to_uv\">"
+                  "<scale x=\"3\" y=\"2\"/></transform></texture></bsdf>")
+             ->reflectance;
+    // Mitsuba 3: (0.1, 0.1), (0.1, 0.4) and (0.2, 0.1) of its own uv, whose v is 1 - v of ours.
+    assert_float_equal(sheen_texture_eval(t, v2(0.1f, 0.9f)).r, 0.9f, 0.0f);
+    assert_float_equal(sheen_texture_eval(t, v2(0.1f, 0.6f)).r, 0.1f, 0.0f);
+    assert_float_equal(sheen_texture_eval(t, v2(0.2f, 0.9f)).r, 0.1f, 0.0f);
+}
+
 static void pictures_are_read_once(void **state)
 {
     Kit *k = *state;
@@ -584,6 +599,7 @@ int main(void)
         KIT_TEST(colors_and_spectra),
         KIT_TEST(lights_of_spectra),
         KIT_TEST(bitmaps_lie_as_in_mitsuba),
+        KIT_TEST(checkerboards_lie_as_in_mitsuba),
         KIT_TEST(pictures_are_read_once),
         KIT_TEST(byte_pictures_are_decoded),
         KIT_TEST(lights),
