@@ -88,7 +88,7 @@ static SheenStatus choose_channels(const ImageSource *source, const exr_attr_chl
     return SHEEN_OK;
 }
 
-/** @return the value of a half; exact. Source: ieee754, binary16. */
+/** @return the value of a half; exact. Source: ieee754-2019, binary16. */
 static float half_to_float(uint16_t h)
 {
     int exponent = h >> 10 & 31;

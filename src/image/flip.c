@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// HDR-FLIP. Section numbers without a key are those of andersson2020.
+// HDR-FLIP: the colour and feature pipelines of andersson2020, over the exposures of andersson2021.
 //
 // Pixels are kept as planes of one channel and all filters are separable, so that the time goes into plain sums of
 // rows.
@@ -12,7 +12,7 @@
 
 static const float pixels_per_degree = 3840.0f / 180.0f * SHEEN_PI; // 0.7 m away, 0.7 m wide
 
-// Exponents and the breakpoint of the colour error, width of a feature in degrees, exponent of the feature error.
+// Exponent and breakpoint of the colour error, width of a feature in degrees, exponent of the feature error.
 static const float qc = 0.7f, pc = 0.4f, pt = 0.95f, feature_width = 0.082f;
 
 // Lab and opponent values are named as the paper names them.
@@ -41,14 +41,14 @@ static inline Rgb xyz_to_rgb(Xyz c)
                  0.055630080f * c.x - 0.203976959f * c.y + 1.056971514f * c.z};
 }
 
-/** Cube root of a number in [0, 2], to 2e-7: a table of floats, two steps of Halley. Unlike cbrtf it is inlined. */
+/** Cube root of a positive number to 2e-7: a third of the exponent, two steps of Halley. Unlike cbrtf it is inlined. */
 static inline float cube_root(float x)
 {
     union {
         float f;
         uint32_t u;
     } guess = {x};
-    guess.u = guess.u / 3 + 0x2a5137a0u; // a third of the exponent; 3 % off at most
+    guess.u = guess.u / 3 + 0x2a5137a0u; // 4 % off at most
     float y = guess.f;
     for (int i = 0; i < 2; ++i) {
         float y3 = y * y * y;
@@ -63,7 +63,7 @@ static inline float lab_curve(float t)
     return t > delta * delta * delta ? cube_root(t) : t / (3.0f * delta * delta) + 4.0f / 29.0f;
 }
 
-/** CIELab of a linear colour in [0, 1], a and b weighted by the lightness (Hunt effect, sec. 4.1.2). */
+/** CIELab of a linear colour in [0, 1], a and b weighted by the lightness (Hunt effect). */
 static inline Lab hunt_lab(Rgb c)
 {
     Xyz t = rgb_to_xyz(c);
@@ -72,7 +72,7 @@ static inline Lab hunt_lab(Rgb c)
     return (Lab){l, 0.01f * l * 500.0f * (x - y), 0.01f * l * 200.0f * (y - z)};
 }
 
-/** HyAB: city block in lightness, Euclid in the others; good for large differences too (sec. 4.1.3). */
+/** HyAB: city block in lightness, Euclid in the others; good for large differences too. */
 static inline float hyab(Lab p, Lab q)
 {
     return fabsf(p.l - q.l) + sqrtf(sqrf(p.a - q.a) + sqrf(p.b - q.b));
@@ -88,7 +88,7 @@ typedef struct FlipFilters {
 /** Samples exp(-pi^2 d^2 / b) at the pixels and normalises. @return the sum before. */
 static double make_sensitivity(float b, PlaneFilter *filter)
 {
-    // One radius for all: three standard deviations of the widest, b = 0.04 (sec. 4.1.1).
+    // One radius for all: three standard deviations of the widest, b = 0.04.
     filter->radius = (int)ceilf(3.0f * sqrtf(0.04f / (2.0f * SHEEN_PI * SHEEN_PI)) * pixels_per_degree);
     double sum = 0.0;
     for (int i = -filter->radius; i <= filter->radius; ++i) {
@@ -101,7 +101,7 @@ static double make_sensitivity(float b, PlaneFilter *filter)
     return sum;
 }
 
-/** Scales the positive weights to a sum of 1 and the negative ones to a sum of -1 (sec. 4.2). */
+/** Scales the positive weights to a sum of 1 and the negative ones to a sum of -1. */
 static void balance(PlaneFilter *filter)
 {
     float positive = 0.0f, negative = 0.0f;
@@ -118,7 +118,7 @@ static void balance(PlaneFilter *filter)
 static FlipFilters make_filters(void)
 {
     FlipFilters f;
-    // Table 1: a and b of the three contrast sensitivities; a sqrt(pi / b) exp(-pi^2 d^2 / b) in the picture.
+    // a and b of the three contrast sensitivities; a sqrt(pi / b) exp(-pi^2 d^2 / b) in the picture.
     make_sensitivity(0.0047f, &f.y);
     make_sensitivity(0.0053f, &f.cx);
     const float a[2] = {34.1f, 13.5f}, b[2] = {0.04f, 0.025f};
@@ -129,7 +129,7 @@ static FlipFilters make_filters(void)
     }
     for (int i = 0; i < 2; ++i) f.cz_share[i] = (float)(share[i] / (share[0] + share[1]));
 
-    // First and second derivative of a Gaussian in one direction, the Gaussian in the other (sec. 4.2).
+    // First and second derivative of a Gaussian in one direction, the Gaussian in the other.
     float sd = 0.5f * feature_width * pixels_per_degree;
     int radius = (int)ceilf(3.0f * sd);
     f.smooth.radius = f.edge.radius = f.point.radius = radius;
@@ -178,14 +178,14 @@ static SheenStatus work_create(uint32_t width, uint32_t height, const SheenLog *
     return SHEEN_OK;
 }
 
-/** The fit of the ACES film curve, in [0, 1]. Source: narkowicz2016 with the exposure of andersson2021, table 1. */
+/** The fit of the ACES film curve, in [0, 1]. Source: narkowicz2016 with the exposure of andersson2021. */
 static inline float aces(float x)
 {
     float y = 0.6f * x;
     return clampf(y * (2.51f * y + 0.03f) / (y * (2.43f * y + 0.59f) + 0.14f), 0.0f, 1.0f);
 }
 
-/** Exposes, tone-maps and converts to the opponent space YCxCz (sec. 4.1.1). */
+/** Exposes, tone-maps and converts to the opponent space YCxCz. */
 static void to_opponent(const FlipWork *w, const SheenImage *picture, float scale)
 {
     for (size_t i = 0; i < w->n; ++i) {
@@ -207,7 +207,7 @@ static void filter_both(const FlipWork *w, const float *in, const PlaneFilter *f
     sheen_plane_filter_y(w->rows, w->width, w->height, fy, out);
 }
 
-/** Edges and points of the lightness: lengths of the first and of the second derivatives (sec. 4.2). */
+/** Edges and points of the lightness: lengths of the first and of the second derivatives. */
 static void detect_features(const FlipWork *w, int which)
 {
     const FlipFilters *f = &w->filters;
@@ -223,7 +223,7 @@ static void detect_features(const FlipWork *w, int which)
     }
 }
 
-/** What the eye resolves of the colour, as Hunt-adjusted Lab (sec. 4.1.1 and 4.1.2). */
+/** What the eye resolves of the colour, as Hunt-adjusted Lab. */
 static void filter_color(const FlipWork *w, int which)
 {
     const FlipFilters *f = &w->filters;
@@ -243,7 +243,7 @@ static void filter_color(const FlipWork *w, int which)
     }
 }
 
-/** Combines colour and feature errors and keeps the largest of the exposures (sec. 4.1.3, 4.2, 4.3). */
+/** Combines colour and feature errors and keeps the largest of the exposures. */
 static void keep_largest(const FlipWork *w, float *map)
 {
     // The largest difference that is possible, between green and blue.

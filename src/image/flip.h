@@ -14,7 +14,7 @@ typedef struct SheenFlipExposures {
 /**
  * Exposures between which all of the reference is neither black nor white.
  * @param reference  finite; a black one gives one exposure of 0
- * Errors: SHEEN_ERR_NOMEM. Source: andersson2021, sec. 4.3
+ * Errors: SHEEN_ERR_NOMEM. Source: andersson2021
  */
 SHEEN_NODISCARD SheenStatus sheen_flip_exposures(const SheenImage *reference, const SheenLog *log,
                                                  SheenFlipExposures *out);
