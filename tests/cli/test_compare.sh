@@ -42,7 +42,9 @@ for i in 1 2 3; do cp "$P/plain.hdr" "ref/r.000$i.hdr"; cp "$P/runs.hdr" "own/fr
 cp "$P/repeat.hdr" own/frame-2.hdr
 echo "not a picture" >own/notes.txt
 expect 0 compare ref own; silent; mv out folders
+cp "$P/plain.hdr" ref/r.005.hdr; cp "$P/plain.hdr" ref/r.00006.hdr # not what #### stands for
 expect 0 compare 'ref/r.####.hdr' own/; silent
+rm ref/r.005.hdr ref/r.00006.hdr
 diff <(grep -v '"image"' folders) <(grep -v '"image"' out) || fail "a pattern and its folder differ"
 is mse 0.0303819 0.0303820; is flicker 0.23060 0.23061; is bias -0.116667 -0.116666
 [ "$(grep -c '"frame":' out)" -eq 3 ] || fail "not one object for each frame"

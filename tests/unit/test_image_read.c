@@ -79,7 +79,7 @@ static Rgb eightfold(uint32_t x, uint32_t y)
     return (Rgb){8.0f * c.r, 8.0f * c.g, 8.0f * c.b};
 }
 
-/** Data window (-2, 1) .. (5, 6) in a display window (0, 0) .. (7, 5): shifted, cut and black outside. */
+/** Data window (8, -19) .. (15, -14) in a display window (10, -20) .. (17, -15): shifted, cut and black outside. */
 static Rgb shifted(uint32_t x, uint32_t y)
 {
     return x <= 5 && y >= 1 ? linear_pixel(x + 2, y - 1) : (Rgb){0};
