@@ -66,6 +66,21 @@ static void test_lookup_as_mitsuba(void **state)
     light_scene_destroy(&s);
 }
 
+// Between the last column and the first; at the poles, whose row is one point.
+static void test_lookup_at_the_seam_and_the_poles(void **state)
+{
+    (void)state;
+    Rgb pixels[3 * 4];
+    for (int i = 0; i < 12; ++i) pixels[i] = i < 4 ? rgb_gray(7) : i < 8 ? rgb_gray((float)i) : rgb_gray(9);
+    LightScene s = light_scene_begin();
+    add_environment(&s, 4, 3, pixels, transform_identity());
+    light_scene_end(&s, SHEEN_ENVIRONMENT_WHOLE);
+    assert_near((double)sheen_environment(s.scene, v3(0, 0, -1)).g, 0.5 * (4 + 7), 1e-5);
+    assert_near((double)sheen_environment(s.scene, v3(0, 1, 0)).g, 7, 1e-5);
+    assert_near((double)sheen_environment(s.scene, v3(0, -1, 0)).g, 9, 1e-5);
+    light_scene_destroy(&s);
+}
+
 // ---- sampling ---------------------------------------------------------------------------------------------------
 
 #define SUBDIVIDE 12
@@ -276,6 +291,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_lookup_as_mitsuba),
+        cmocka_unit_test(test_lookup_at_the_seam_and_the_poles),
         cmocka_unit_test(test_samples_follow_the_density),
         cmocka_unit_test(test_one_bright_pixel),
         cmocka_unit_test(test_density_where_there_is_light),

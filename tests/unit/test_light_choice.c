@@ -266,6 +266,23 @@ static void test_no_light_is_missed(void **state)
     light_scene_destroy(&s);
 }
 
+// A strip of which only the end is above the horizon: on average it is well below.
+static void test_a_strip_that_ends_above_the_horizon(void **state)
+{
+    (void)state;
+    LightScene s = light_scene_begin();
+    const Vec3 strip[4] = {{1, -0.01f, -1}, {1, -0.01f, 0.05f}, {1, 0.01f, 0.05f}, {1, 0.01f, -1}}; // faces the origin
+    add_quad(&s, strip, rgb_gray(1));
+    add_sphere(&s, v3(0, 0, 3), 0.1f, false, rgb_gray(1));
+    light_scene_end(&s, SHEEN_ENVIRONMENT_WHOLE);
+    double e[2];
+    Random r = {1, 0};
+    irradiances(&s, v3(0, 0, 0), v3(0, 0, 1), 1000, &r, e);
+    assert_true(e[0] > 1e-5);
+    assert_true(sheen_lights_choose_probability(s.lights, v3(0, 0, 0), v3(0, 0, 1), 0) > 1e-4f);
+    light_scene_destroy(&s);
+}
+
 /** Relative standard deviation of an estimate by one light, if the chosen light were known without noise. */
 static double noise_of_choice(const LightScene *s, int n_points, Vec3 (*place)(Random *r), Vec3 n, double *worst)
 {
@@ -339,6 +356,7 @@ int main(void)
         cmocka_unit_test(test_none_above_the_horizon),
         cmocka_unit_test(test_points_of_nonsense),
         cmocka_unit_test(test_no_light_is_missed),
+        cmocka_unit_test(test_a_strip_that_ends_above_the_horizon),
         cmocka_unit_test(test_the_choice_fits_rectangles),
         cmocka_unit_test(test_the_choice_fits_all_kinds),
     };
