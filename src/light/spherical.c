@@ -168,7 +168,7 @@ static bool corners_from(const Vec3 v[3], Vec3 p, Corners *t)
     t->la = d3_length(t->a);
     t->lb = d3_length(t->b);
     t->lc = d3_length(t->c);
-    // Source: vanoosterom1983, eq. (8).
+    // Source: vanoosterom1983.
     double den =
         t->la * t->lb * t->lc + d3_dot(t->a, t->b) * t->lc + d3_dot(t->b, t->c) * t->la + d3_dot(t->c, t->a) * t->lb;
     t->solid_angle = 2.0 * atan2(-t->volume, den);

@@ -59,7 +59,7 @@ SheenRectangle sheen_rectangle_make(Vec3 corner, Vec3 ex, Vec3 ey);
  * @param st   coordinates of the point on the rectangle, [0, 1]^2
  * @param pdf  density with respect to solid angle, 1/sr
  * @return false when p is not in front of the rectangle
- * Source: urena2013-spherical-rectangle, sec. 4.
+ * Source: urena2013-spherical-rectangle.
  */
 bool sheen_rectangle_sample(const SheenRectangle *r, Vec3 p, Vec2 u, Vec2 *st, float *pdf);
 

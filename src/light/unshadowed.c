@@ -22,13 +22,12 @@ static inline float horizon(float c, float s)
     return c >= s ? c : across;
 }
 
-// theta / (2 pi sin theta) for x = cos theta, a rational fit. Source: heitz2016-ltc-real-time.
+// theta / (2 pi sin theta) for x = cos theta: the arc cosine is the square root of 1 - x times a smooth function, here
+// a polynomial with a relative error of 0.003 for x > -0.9 and 0.07 beyond.
 static inline float edge_factor(float x)
 {
-    float y = fabsf(x);
-    float v = (0.8543985f + (0.4965155f + 0.0145206f * y) * y) / (3.4175940f + (4.1616724f + y) * y);
-    float obtuse = 0.5f / sqrtf(maxf(1.0f - x * x, 1e-7f)) - v;
-    return x > 0.0f ? v : obtuse;
+    float smooth = 0.25034262f + x * (-0.0311225f + x * (0.00938617f + x * (-0.01856491f + x * 0.01567876f)));
+    return smooth / sqrtf(maxf(1.0f + x, 1e-6f));
 }
 
 // The irradiance of a uniform polygon on a surface that faces it is pi L times the length of the vector form factor, a
@@ -78,7 +77,7 @@ VECTOR_LOOP weigh_spheres(const Spheres *g, uint32_t first, uint32_t count, Vec3
 }
 
 // Power over squared distance, with both cosines bounded over the body's sphere and its cone of normals.
-// Source: estevez2018-many-lights, sec. 4.
+// Source: estevez2018-many-lights.
 void sheen_bodies_weigh(const Bodies *g, uint32_t first, uint32_t count, Vec3 p, Vec3 n, float *restrict w)
 {
     uint32_t end = first + whole_vectors(count);

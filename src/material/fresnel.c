@@ -2,7 +2,7 @@
 // How much light an interface between two media reflects. Unpolarized: the mean of both polarizations.
 #include "material/bsdf.h"
 
-// Source: born1999, sec. 1.5.2, eqs. (21a) and (24).
+// Source: born1999, sec. 1.5.2.
 float sheen_fresnel_dielectric(float cos_i, float eta, float *cos_t)
 {
     *cos_t = -cos_i;

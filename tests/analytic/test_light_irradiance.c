@@ -122,9 +122,9 @@ static void test_sphere(void **state)
     light_scene_destroy(&s);
 }
 
-// Half a sphere is above the horizon of a point level with its centre; the closed form for a sphere cut by the horizon
-// at cosine c and sine s of its half-angle is that of howell2010, configuration B-45, here for c = 0:
-// E = L (arcsin-free) (sigma - sin sigma cos sigma), sigma the half-angle.
+// Half a sphere is above the horizon of a point level with its centre. Irradiance is radiance times the area of the
+// directions projected to the ground: that of half a cap of half-angle sigma is the segment of the unit disk beyond the
+// chord at cos sigma, sigma - sin sigma cos sigma.
 static void test_sphere_cut_by_the_horizon(void **state)
 {
     (void)state;
