@@ -76,6 +76,7 @@ exr_context_initializer_t sheen_exr_initializer(ExrStream *stream)
     init.write_fn = write_memory;
     init.max_image_width = init.max_image_height = SHEEN_IMAGE_MAX_SIDE;
     init.max_tile_width = init.max_tile_height = SHEEN_IMAGE_MAX_SIDE;
+    init.zip_level = 4; // in 60 % of the time of the library's 6, for 2 % more bytes
     init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION; // half a picture is no picture
     return init;
 }
