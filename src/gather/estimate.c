@@ -32,43 +32,48 @@ static double inverse_of_nearer(float a, float b)
     return 1.0 / (double)minf(a, b); // 0 for two infinite distances
 }
 
-// Radiance exchanged across the walls between the rings of one sector.
-static RgbSum ring_walls(SheenStrata s, const Rgb L[], const float distance[])
+// Weights of the walls, the same in every sector.
+typedef struct WallTable {
+    double ring[SHEEN_RINGS_MAX];   // sin cos^2 at the lower edge of ring j; 0 for ring 0, which has none
+    double sector[SHEEN_RINGS_MAX]; // sin at the upper edge less sin at the lower edge
+} WallTable;
+
+static void fill_table(unsigned rings, WallTable *t)
 {
-    RgbSum sum = {0, 0, 0};
-    for (unsigned j = 1; j < s.rings; ++j) {
-        double sin2 = (double)j / s.rings;
-        double w = sqrt(sin2) * (1.0 - sin2) * inverse_of_nearer(distance[j], distance[j - 1]);
-        sum_add(&sum, w, rgb_sub(L[j], L[j - 1]));
+    double lower = 0.0;
+    for (unsigned j = 0; j < rings; ++j) {
+        double sin2 = (double)j / rings, upper = sqrt((double)(j + 1) / rings);
+        t->ring[j] = lower * (1.0 - sin2);
+        t->sector[j] = upper - lower;
+        lower = upper;
     }
-    return sum;
 }
 
-// The same across the wall between a sector and the one before it.
-static RgbSum sector_walls(SheenStrata s, const Rgb L[], const float distance[], const Rgb L_before[],
-                           const float distance_before[])
+// Radiance exchanged across the walls of one sector: between its rings (u), and to the sector before it (v).
+static void add_walls(SheenStrata s, const WallTable *t, const Rgb L[], const float distance[], const Rgb L_before[],
+                      const float distance_before[], RgbSum *u, RgbSum *v)
 {
-    RgbSum sum = {0, 0, 0};
     for (unsigned j = 0; j < s.rings; ++j) {
-        double width = sqrt((double)(j + 1) / s.rings) - sqrt((double)j / s.rings);
-        sum_add(&sum, width * inverse_of_nearer(distance[j], distance_before[j]), rgb_sub(L[j], L_before[j]));
+        if (j) sum_add(u, t->ring[j] * inverse_of_nearer(distance[j], distance[j - 1]), rgb_sub(L[j], L[j - 1]));
+        sum_add(v, t->sector[j] * inverse_of_nearer(distance[j], distance_before[j]), rgb_sub(L[j], L_before[j]));
     }
-    return sum;
 }
 
 static void translation_gradient(SheenStrata s, const Rgb L[], const float distance[], Rgb out[2])
 {
+    WallTable table;
+    fill_table(s.rings, &table);
     RgbSum x = {0, 0, 0}, y = {0, 0, 0};
     const double two_pi = 6.283185307179586;
     for (unsigned k = 0; k < s.sectors; ++k) {
         size_t here = (size_t)k * s.rings, before = (size_t)(k ? k - 1 : s.sectors - 1) * s.rings;
-        Rgb u = sum_rgb(ring_walls(s, L + here, distance + here));
-        Rgb v = sum_rgb(sector_walls(s, L + here, distance + here, L + before, distance + before));
+        RgbSum u = {0, 0, 0}, v = {0, 0, 0};
+        add_walls(s, &table, L + here, distance + here, L + before, distance + before, &u, &v);
         double middle = two_pi * (k + 0.5) / s.sectors, edge = two_pi * k / s.sectors, width = two_pi / s.sectors;
-        sum_add(&x, width * cos(middle), u);
-        sum_add(&y, width * sin(middle), u);
-        sum_add(&x, -sin(edge), v);
-        sum_add(&y, cos(edge), v);
+        sum_add(&x, width * cos(middle), sum_rgb(u));
+        sum_add(&y, width * sin(middle), sum_rgb(u));
+        sum_add(&x, -sin(edge), sum_rgb(v));
+        sum_add(&y, cos(edge), sum_rgb(v));
     }
     out[0] = sum_rgb(x);
     out[1] = sum_rgb(y);
@@ -84,7 +89,7 @@ void sheen_estimate_irradiance(SheenStrata s, const Vec3 directions[], const Rgb
         sum_add(&E, per_cell, L[i]);
         // n x d = (-d.y, d.x, 0) in the local frame, over the density cos(theta) / pi of the samples. A grazing sample
         // is cut at 0.6 degrees, where one ray would outweigh all others.
-        double scale = per_cell / fmax((double)directions[i].z, 0.01);
+        double scale = per_cell / (double)maxf(directions[i].z, 0.01f);
         sum_add(&rx, -(double)directions[i].y * scale, L[i]);
         sum_add(&ry, (double)directions[i].x * scale, L[i]);
     }

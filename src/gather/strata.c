@@ -6,6 +6,7 @@ SheenStrata sheen_strata_cosine(unsigned n_rays)
     if (n_rays < 4) n_rays = 4;
     unsigned rings = (unsigned)lrintf(sqrtf((float)n_rays * SHEEN_INV_PI));
     if (rings < 1) rings = 1;
+    if (rings > SHEEN_RINGS_MAX) rings = SHEEN_RINGS_MAX;
     unsigned sectors = (unsigned)lrintf((float)n_rays / (float)rings);
     return (SheenStrata){rings, sectors < 3 ? 3 : sectors};
 }

@@ -5,6 +5,9 @@
 
 #include "math/vec.h"
 
+/** Most rings that strata may have. */
+enum { SHEEN_RINGS_MAX = 512 };
+
 /** M rings times N sectors. Cells are numbered sector-major: cell k M + j is ring j (0 at the pole) of sector k. */
 typedef struct SheenStrata {
     unsigned rings, sectors;

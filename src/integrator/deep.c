@@ -3,7 +3,6 @@
 
 #include "cache/irradiance_cache.h"
 #include "integrator/hemisphere.h"
-#include "integrator/memo.h"
 #include "math/warp.h"
 
 #include <stdlib.h>
@@ -21,7 +20,7 @@ enum {
     RECORDS_MAX = 1 << 17
 };
 // Sizes in units of the scale: the median distance that light goes between surfaces.
-static const float reach_min = 0.02f, reach_max = 0.25f, cell_min = 0.025f, near_cells = 2.5f;
+static const float reach_min = 0.02f, reach_max = 0.25f, cell_min = 0.025f, near_cells = 4.0f;
 static const float cell_per_distance = 0.16f;
 
 /** What a stratum of a deep gather saw. */
@@ -173,7 +172,7 @@ static void link_task(void *user, size_t item, unsigned worker)
     DeepCell *cells = cells_of(d, (uint32_t)item);
     for (size_t i = 0; i < strata_count(deep_strata); ++i) {
         DeepCell *c = &cells[i];
-        if (rgb_is_black(c->weight)) continue;
+        if (rgb_is_black(c->weight) || c->share[0] > 0.0f) continue;
         Contributors found;
         sheen_irradiance_cache_find(d->cache, c->p, c->n, 0.0f, &found);
         float sum = 0.0f;
@@ -191,14 +190,14 @@ static void link_task(void *user, size_t item, unsigned worker)
     }
 }
 
-// Queues the hits of the records gathered last that no record covers.
+// Queues the hits that no record covers.
 static SheenStatus queue_uncovered(const SheenDeep *d, uint32_t first, Queue *q)
 {
-    for (uint32_t r = first; r < d->cache->n_records; ++r) {
+    for (uint32_t r = first; r < d->gathered; ++r) {
         const DeepCell *cells = cells_of(d, r);
         for (size_t i = 0; i < strata_count(deep_strata); ++i) {
             const DeepCell *c = &cells[i];
-            if (rgb_is_black(c->weight) || covered(d, c->p, c->n)) continue;
+            if (rgb_is_black(c->weight) || c->share[0] > 0.0f) continue;
             DiffusePoint p = {c->p, sheen_surface_offset(c->p, c->ng), c->ng, c->n, rgb_scale(c->weight, SHEEN_PI)};
             if (!queue_push(q, &p)) return SHEEN_ERR_NOMEM;
         }
@@ -214,7 +213,10 @@ static SheenStatus gather_new(SheenDeep *d, DeepTask *task)
     d->cells = grown;
     task->first = d->gathered;
     d->gathered = n;
-    bool done = sheen_pool_run(d->work->pool, n - task->first, gather_task, task, d->work->cancel);
+    SheenPool *pool = d->work->pool;
+    const atomic_bool *cancel = d->work->cancel;
+    bool done = sheen_pool_run(pool, n - task->first, gather_task, task, cancel) &&
+                sheen_pool_run(pool, n, link_task, task, cancel);
     return done ? SHEEN_OK : SHEEN_ERR_CANCELLED;
 }
 
@@ -232,8 +234,6 @@ static SheenStatus place_and_gather(SheenDeep *d, Queue *q, DeepTask *task, Shee
         if (status == SHEEN_OK && round + 1 < ROUNDS_MAX) status = queue_uncovered(d, first, q);
     }
     sheen_hemisphere_free(&probe);
-    if (status == SHEEN_OK && !sheen_pool_run(d->work->pool, d->gathered, link_task, task, d->work->cancel))
-        status = SHEEN_ERR_CANCELLED;
     return status;
 }
 
@@ -404,19 +404,25 @@ static Rgb interpolate(const SheenDeep *d, const MemoCell *cell, int level)
     return c.n ? rgb_scale(sum, 1.0f / c.weight_sum) : sum;
 }
 
-Rgb sheen_deep_read(const SheenDeep *d, Vec3 p, Vec3 n, float distance, int k, uint32_t hash)
+DeepQuery sheen_deep_ask(const SheenDeep *d, Vec3 p, Vec3 n, float distance, int k, uint32_t hash)
 {
-    if (k < 0) return rgb_gray(0.0f);
-    int level = (int)d->bounces - k;
+    if (k < 0) return (DeepQuery){.level = -1};
+    DeepQuery query = {.level = (int)d->bounces - k};
     float size = maxf(cell_per_distance * distance, cell_min * d->scale);
     Frame f = frame_from_normal(n);
     float u = hash_to_unit(hash) - 0.5f, v = hash_to_unit(hash_u32(hash ^ 0x2545f491u)) - 0.5f;
     Vec3 q = v3_mad(v3_mad(p, u * size, f.t), v * size, f.b);
-    MemoCell cell = sheen_memo_cell(q, n, size, (uint32_t)level);
-    Rgb E;
-    if (sheen_memo_get(d->memo, cell.key, &E)) return E;
-    E = interpolate(d, &cell, level);
-    sheen_memo_put(d->memo, cell.key, E);
+    query.cell = sheen_memo_cell(q, n, size, (uint32_t)query.level);
+    sheen_memo_prefetch(d->memo, query.cell.key);
+    return query;
+}
+
+Rgb sheen_deep_answer(const SheenDeep *d, const DeepQuery *query)
+{
+    Rgb E = rgb_gray(0.0f);
+    if (query->level < 0 || sheen_memo_get(d->memo, query->cell.key, &E)) return E;
+    E = interpolate(d, &query->cell, query->level);
+    sheen_memo_put(d->memo, query->cell.key, E);
     return E;
 }
 

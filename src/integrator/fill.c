@@ -66,11 +66,18 @@ void sheen_fill_destroy(SheenFill **fill)
 static void add_deep_light(const SheenFill *f, Hemisphere *h)
 {
     if (!f->deep) return;
-    for (size_t i = 0; i < h->n_vertices; ++i) {
-        const GatherVertex *v = &h->vertices[i];
-        uint32_t hash = hash_combine(h->key, v->cell);
-        Rgb E = sheen_deep_read(f->deep, v->point.p, v->point.n, v->distance, (int)v->bounces - 1, hash);
-        h->L[v->cell] = rgb_add(h->L[v->cell], rgb_mul(v->weight, E));
+    enum { BLOCK = 64 };
+    DeepQuery queries[BLOCK];
+    for (size_t first = 0; first < h->n_vertices; first += BLOCK) {
+        const GatherVertex *v = h->vertices + first;
+        size_t n = h->n_vertices - first < BLOCK ? h->n_vertices - first : BLOCK;
+        for (size_t i = 0; i < n; ++i)
+            queries[i] = sheen_deep_ask(f->deep, v[i].point.p, v[i].point.n, v[i].distance, (int)v[i].bounces - 1,
+                                        hash_combine(h->key, v[i].cell));
+        for (size_t i = 0; i < n; ++i) {
+            Rgb E = sheen_deep_answer(f->deep, &queries[i]);
+            h->L[v[i].cell] = rgb_add(h->L[v[i].cell], rgb_mul(v[i].weight, E));
+        }
     }
 }
 

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SLOTS = 1 << 20, NORMAL_STEPS = 12 };
+enum { SLOTS = 1 << 18, NORMAL_STEPS = 12 };
 
 typedef struct Slot {
     atomic_uint_least64_t key; // 0 is free
@@ -90,6 +90,11 @@ MemoCell sheen_memo_cell(Vec3 p, Vec3 n, float size, uint32_t tag)
     h ^= h >> 32;
     cell.key = h ? h : 1;
     return cell;
+}
+
+void sheen_memo_prefetch(const SheenMemo *memo, uint64_t key)
+{
+    __builtin_prefetch(&memo->slots[key & (SLOTS - 1)]);
 }
 
 bool sheen_memo_get(const SheenMemo *memo, uint64_t key, Rgb *value)

@@ -33,6 +33,9 @@ void sheen_memo_destroy(SheenMemo **memo);
 /** @return true and the value when the cell has one. Thread-safe, also against sheen_memo_put. */
 bool sheen_memo_get(const SheenMemo *memo, uint64_t key, Rgb *value);
 
+/** Starts to load the slot of a key that sheen_memo_get will soon ask for. */
+void sheen_memo_prefetch(const SheenMemo *memo, uint64_t key);
+
 /**
  * Remembers a value; drops it when the table is three quarters full. All callers must put the same value for a key:
  * then nothing depends on who was first. Thread-safe.

@@ -29,6 +29,7 @@ typedef struct Worker {
 
 typedef struct Passes {
     const SheenWork *work;
+    SheenEye eye;
     SheenFilm *film;
     Sums sums;
     Worker *workers; // [pool size]
@@ -133,7 +134,7 @@ static void render_tile_sample(Passes *p, uint32_t x0, uint32_t y0, uint32_t ind
         uint32_t x = x0 + i % width, y = y0 + i / width;
         w->samplers[i] = sampler_make(hash_combine(hash_combine(hash_u32(work->options.seed), x), y), index);
         Vec2 u = sampler_2d(&w->samplers[i]);
-        w->rays[i] = sheen_camera_ray(work->camera, work->width, work->height, (float)x + u.x, (float)y + u.y);
+        w->rays[i] = sheen_eye_ray(&p->eye, (float)x + u.x, (float)y + u.y);
     }
     sheen_accel_intersect_many(work->accel, SHEEN_COHERENT, n, w->rays, w->hits);
     w->stats.rays_camera += n;
@@ -214,6 +215,7 @@ static SheenStatus run_passes(Passes *p, SheenStats *stats)
 SheenStatus sheen_path_render(const SheenWork *work, SheenFilm *film, SheenStats *stats)
 {
     Passes p = {.work = work,
+                .eye = sheen_eye(work->camera, work->width, work->height),
                 .film = film,
                 .tiles_x = (work->width + (size_t)TILE - 1) / TILE,
                 .tiles_y = (work->height + (size_t)TILE - 1) / TILE,

@@ -99,11 +99,12 @@ static bool direct_light(const SheenWork *work, Shader *s, SheenFilm *film)
     uint32_t per_point = work->options.light_samples;
     for (uint32_t j = 0; j < per_point; ++j) {
         for (size_t i = 0; i < n; ++i) {
-            // All light samples of a pixel are one low-discrepancy sequence.
-            uint32_t key =
-                hash_combine(hash_combine(work->options.seed ^ KEY_LIGHT, points[i].pixel), points[i].branch);
-            SheenSampler sampler = sampler_make(key, points[i].sample * per_point + j);
-            s->numbers[i].choice = sampler_1d(&sampler);
+            uint32_t x = points[i].pixel % work->width, y = points[i].pixel / work->width;
+            uint32_t key = hash_combine(work->options.seed ^ KEY_LIGHT, points[i].branch);
+            uint32_t index =
+                sheen_sample_index(x, y, work->options.spp * per_point, points[i].sample * per_point + j);
+            SheenSampler sampler = sampler_make(key, index);
+            s->numbers[i].choice = hash_to_unit(key + index * 0x9e3779b9u); // steps of the golden ratio
             s->numbers[i].place = sampler_2d(&sampler);
         }
         s->stats.rays_shadow +=

@@ -69,22 +69,18 @@ static bool reserve_batch(Visibility *v, size_t n)
     return v->batch_capacity > 0;
 }
 
-static bool push_camera_rays(const SheenWork *work, const Tile *tile, uint32_t first, uint32_t n, Visibility *v)
+static bool push_camera_rays(const SheenWork *work, const SheenEye *eye, const Tile *tile, uint32_t first, uint32_t n,
+                             Visibility *v)
 {
     v->n_rays[0] = 0;
     for (uint32_t y = tile->y; y < tile->y + tile->height; ++y)
         for (uint32_t x = tile->x; x < tile->x + tile->width; ++x)
             for (uint32_t s = first; s < first + n; ++s) {
                 uint32_t pixel = y * work->width + x;
-                SheenSampler sampler = sampler_make(hash_combine(work->options.seed, pixel), s);
+                SheenSampler sampler =
+                    sampler_make(hash_u32(work->options.seed), sheen_sample_index(x, y, work->options.spp, s));
                 Vec2 u = sampler_2d(&sampler);
-                EyeRay r = {sheen_camera_ray(work->camera, work->width, work->height, (float)x + u.x, (float)y + u.y),
-                            rgb_gray(1.0f),
-                            0.0f,
-                            pixel,
-                            s,
-                            1,
-                            0};
+                EyeRay r = {sheen_eye_ray(eye, (float)x + u.x, (float)y + u.y), rgb_gray(1.0f), 0.0f, pixel, s, 1, 0};
                 if (!push_ray(v, 0, &r)) return false;
             }
     return true;
@@ -147,8 +143,8 @@ static void add_light(const SheenWork *work, const EyeRay *r, Rgb radiance, floa
     film_add(film, SHEEN_AOV_DIRECT, r->pixel % work->width, r->pixel / work->width, value);
 }
 
-static bool arrive(const SheenWork *work, EyeRay *r, const Hit *hit, int next, float weight, SheenFilm *film,
-                   Visibility *v, SheenStats *stats)
+static bool arrive(const SheenWork *work, const SheenEye *eye, EyeRay *r, const Hit *hit, int next, float weight,
+                   SheenFilm *film, Visibility *v, SheenStats *stats)
 {
     if (hit->shape == SHEEN_NONE) {
         if (film) add_light(work, r, sheen_environment(work->scene, r->ray.d), weight, film, stats);
@@ -167,7 +163,7 @@ static bool arrive(const SheenWork *work, EyeRay *r, const Hit *hit, int next, f
     if (sheen_bsdf_is_delta(&bsdf)) return split(work, r, &s, &bsdf, next, v);
     ShadingPoint p = {.throughput = r->throughput, .pixel = r->pixel, .sample = r->sample, .branch = r->branch};
     if (!sheen_diffuse_point(work->scene, &s, wo, &p.point)) return true;
-    p.footprint = r->length * 2.0f * tanf(0.5f * work->camera->fov_x) / (float)work->width;
+    p.footprint = r->length * eye->pixel;
     return push_point(v, &p);
 }
 
@@ -175,7 +171,8 @@ bool sheen_visibility_trace(const SheenWork *work, const Tile *tile, uint32_t fi
                             Visibility *v, SheenStats *stats)
 {
     v->n_points = 0;
-    if (!push_camera_rays(work, tile, first, n, v)) return false;
+    SheenEye eye = sheen_eye(work->camera, work->width, work->height);
+    if (!push_camera_rays(work, &eye, tile, first, n, v)) return false;
     stats->rays_camera += v->n_rays[0];
     float weight = 1.0f / (float)work->options.spp;
     for (int list = 0, depth = 0; v->n_rays[list] > 0; list ^= 1, ++depth) {
@@ -186,7 +183,7 @@ bool sheen_visibility_trace(const SheenWork *work, const Tile *tile, uint32_t fi
         if (depth) stats->rays_specular += n_rays;
         v->n_rays[list ^ 1] = 0;
         for (size_t i = 0; i < n_rays; ++i)
-            if (!arrive(work, &v->rays[list][i], &v->hits[i], list ^ 1, weight, film, v, stats)) return false;
+            if (!arrive(work, &eye, &v->rays[list][i], &v->hits[i], list ^ 1, weight, film, v, stats)) return false;
     }
     return true;
 }

@@ -26,11 +26,29 @@ void sheen_stats_add(SheenStats *total, const SheenStats *part)
     total->nonfinite_samples += part->nonfinite_samples;
 }
 
-Ray sheen_camera_ray(const SheenCamera *camera, uint32_t width, uint32_t height, float x, float y)
+// Spreads the low 16 bits to the even bits.
+static uint32_t spread(uint32_t x)
 {
-    float half = tanf(0.5f * camera->fov_x);
-    float px = (1.0f - 2.0f * x / (float)width) * half; // +x is to the left
-    float py = ((float)height - 2.0f * y) / (float)width * half;
-    Vec3 d = transform_vector(&camera->to_world, v3(px, py, 1.0f));
-    return (Ray){transform_point(&camera->to_world, v3(0, 0, 0)), INFINITY, v3_normalize(d)};
+    x &= 0xffffu;
+    x = (x | x << 8) & 0x00ff00ffu;
+    x = (x | x << 4) & 0x0f0f0f0fu;
+    x = (x | x << 2) & 0x33333333u;
+    return (x | x << 1) & 0x55555555u;
+}
+
+uint32_t sheen_sample_index(uint32_t x, uint32_t y, uint32_t per_pixel, uint32_t s)
+{
+    return (spread(x) | spread(y) << 1) * per_pixel + s;
+}
+
+SheenEye sheen_eye(const SheenCamera *camera, uint32_t width, uint32_t height)
+{
+    // The camera looks along +z; +x is to the left in the picture and +y up.
+    float half = tanf(0.5f * camera->fov_x), pixel = 2.0f * half / (float)width;
+    const Transform *t = &camera->to_world;
+    return (SheenEye){.origin = transform_point(t, v3(0, 0, 0)),
+                      .corner = transform_vector(t, v3(half, 0.5f * (float)height * pixel, 1.0f)),
+                      .right = transform_vector(t, v3(-pixel, 0, 0)),
+                      .down = transform_vector(t, v3(0, -pixel, 0)),
+                      .pixel = pixel};
 }

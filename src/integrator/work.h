@@ -59,11 +59,31 @@ typedef struct SheenWork {
     const SheenLog *log;
 } SheenWork;
 
+/** A camera and the picture that it takes, ready to make rays. */
+typedef struct SheenEye {
+    Vec3 origin;
+    Vec3 corner;      // from the origin to the upper left corner of the picture at distance 1
+    Vec3 right, down; // one pixel's steps there
+    float pixel;      // side of a pixel at distance 1, metres
+} SheenEye;
+
 /**
- * The camera ray through a point of the picture.
+ * Number of sample s of a pixel in a sequence over the whole picture: pixels follow each other along a Z-order curve, so
+ * that the samples of each aligned square of pixels are stratified together and neighbors' errors cancel.
+ * Source: ahmed2020-z-sampler.
+ */
+uint32_t sheen_sample_index(uint32_t x, uint32_t y, uint32_t per_pixel, uint32_t s);
+
+SheenEye sheen_eye(const SheenCamera *camera, uint32_t width, uint32_t height);
+
+/**
+ * The ray through a point of the picture.
  * @param x, y  in pixels, (0, 0) the upper left corner of the picture
  */
-Ray sheen_camera_ray(const SheenCamera *camera, uint32_t width, uint32_t height, float x, float y);
+static inline Ray sheen_eye_ray(const SheenEye *eye, float x, float y)
+{
+    return (Ray){eye->origin, INFINITY, v3_normalize(v3_mad(v3_mad(eye->corner, x, eye->right), y, eye->down))};
+}
 
 /**
  * Integrators: render the whole picture into the film and count into *stats.
