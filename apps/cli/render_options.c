@@ -171,8 +171,8 @@ const Option render_options[] = {
      .argument = "on|off",
      .meaning = "Keep the radius of a record below that of its neighbors plus their distance, so that small detail is "
                 "not skipped.",
-     .standard = "on",
-     .example = "--neighbor-clamping off",
+     .standard = "off",
+     .example = "--neighbor-clamping on",
      .choices = on_off,
      .recorded = true,
      FIELD(neighbor_clamping)},

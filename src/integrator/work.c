@@ -11,7 +11,7 @@ SheenOptions sheen_options_default(void)
         .gather_rays = 1024,
         .gradients = SHEEN_GRADIENTS_STRATIFIED,
         .secondary = SHEEN_SECONDARY_CACHE,
-        .neighbor_clamping = true,
+        .neighbor_clamping = false,
         .gradient_clamping = true,
     };
 }
