@@ -36,6 +36,7 @@ static int64_t write_memory(exr_const_context_t context, void *user, const void 
 {
     ExrStream *stream = user;
     if (sheen_buffer_write(stream->buffer, offset, data, size)) return (int64_t)size;
+    stream->no_memory = true;
     fail(context, EXR_ERR_OUT_OF_MEMORY, "out of memory");
     return -1;
 }

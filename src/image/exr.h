@@ -12,6 +12,7 @@ typedef struct ExrStream {
     const uint8_t *data; // when reading
     size_t size;
     ImageBuffer *buffer; // when writing
+    bool no_memory;      // the buffer could not grow, which the library takes for a failed write
     char message[200];
 } ExrStream;
 

@@ -123,7 +123,7 @@ SheenStatus sheen_exr_encode(const ImageTarget *target, ImageBuffer *out)
         }
     }
     free(job.channels);
-    if (result == EXR_ERR_OUT_OF_MEMORY) return sheen_image_no_memory(target->name, target->log);
+    if (result == EXR_ERR_OUT_OF_MEMORY || stream.no_memory) return sheen_image_no_memory(target->name, target->log);
     if (result) { // nothing of the world takes part: the layers or attributes are impossible
         sheen_exr_fail(&stream, result, target->name, target->log);
         return SHEEN_ERR_INVALID;

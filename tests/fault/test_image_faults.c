@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writing fails cleanly: one line with the file's name and the reason, nothing left behind, an old file untouched.
+// Failures of the world: one line with the file's name and the reason, nothing left behind, an old file untouched.
 #include "image/image.h"
 
 #include <dirent.h>
@@ -171,6 +171,85 @@ static void test_disk_is_full(void **state)
     }
 }
 
+// The sanitizers keep terabytes of addresses for themselves, so that no limit can be put on them.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define LIMITS_WORK 0
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
+#define LIMITS_WORK 0
+#endif
+#endif
+#ifndef LIMITS_WORK
+#define LIMITS_WORK 1
+#endif
+
+/** @return the bytes of addresses that this process uses. */
+static rlim_t used_addresses(void)
+{
+    unsigned long pages = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    assert_non_null(file);
+    assert_int_equal(fscanf(file, "%lu", &pages), 1);
+    fclose(file);
+    return (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE);
+}
+
+/** Runs `work` in a child that can have only `more` bytes beyond what it has. @return its value */
+static int run_limited(rlim_t more, int (*work)(void))
+{
+    pid_t child = fork();
+    if (child == 0) {
+        rlim_t limit = used_addresses() + more;
+        setrlimit(RLIMIT_AS, &(struct rlimit){limit, limit});
+        _exit(work());
+    }
+    int status = 0;
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFEXITED(status));
+    return WEXITSTATUS(status);
+}
+
+/** A header that claims 3 GB, in a file just long enough to be believed. */
+static int read_too_large(void)
+{
+    static char file[20000] = "#?RADIANCE\n\n-Y 16384 +X 16384\n";
+    Lines lines = {0};
+    SheenLog log = {keep_line, &lines};
+    SheenImage image;
+    SheenStatus status = sheen_image_decode(file, sizeof file, "large.hdr", &log, &image);
+    return status == SHEEN_ERR_NOMEM && lines.n == 1 && !strcmp(lines.last, "large.hdr: out of memory") ? 0 : 1;
+}
+
+static Rgb many_pixels[1024 * 1024];
+
+static int write_too_large(void)
+{
+    static const char *const names[] = {"a.pfm", "a.exr", "a.hdr", "a.png"};
+    uint32_t h = 1; // noise, which no format makes small
+    for (size_t i = 0; i < 3 * 1024 * 1024; ++i) {
+        h = h * 1664525u + 1013904223u;
+        (&many_pixels[0].r)[i] = (float)(h >> 8) * 0x1p-24f;
+    }
+    for (int i = 0; i < 4; ++i) {
+        Lines lines = {0};
+        SheenLog log = {keep_line, &lines};
+        SheenImageView view = {.width = 1024, .height = 1024, .pixels = many_pixels};
+        const char *path = in_dir(names[i]);
+        SheenStatus status = sheen_image_write(path, &view, 0.0f, &log);
+        if (status != SHEEN_ERR_NOMEM || lines.n != 1 || !strstr(lines.last, "out of memory")) return 1 + i;
+    }
+    return 0;
+}
+
+static void test_memory_is_short(void **state)
+{
+    (void)state;
+    if (!LIMITS_WORK) skip();
+    assert_int_equal(run_limited((rlim_t)1 << 30, read_too_large), 0);
+    assert_int_equal(run_limited((rlim_t)2 << 20, write_too_large), 0);
+    assert_int_equal(count_entries(), 0);
+}
+
 static void test_impossible_views(void **state)
 {
     (void)state;
@@ -193,7 +272,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         IN_DIR(test_unknown_ending),       IN_DIR(test_path_is_a_directory),
         IN_DIR(test_directory_is_missing), IN_DIR(test_directory_is_not_writable),
-        IN_DIR(test_disk_is_full),         IN_DIR(test_impossible_views),
+        IN_DIR(test_disk_is_full),         IN_DIR(test_memory_is_short),
+        IN_DIR(test_impossible_views),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
