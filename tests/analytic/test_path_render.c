@@ -93,15 +93,16 @@ static void test_time_limit(void **state)
     (void)state;
     Kit kit;
     room(2, &kit);
-    kit.work.options.time_limit = 0.25;
+    kit.work.options.time_limit = 1.0;
     kit.work.options.spp = 1; // does not bind
     SheenStats stats = {0};
     double start = sheen_clock_seconds();
     SheenFilm *limited = kit_render(&kit, ALL_LAYERS, &stats);
     double seconds = sheen_clock_seconds() - start;
     assert_true(stats.passes > 1 && stats.spp_done > 1);
-    // A pass that was expected to end in time may be held up by others on the machine: hence the generous bound.
-    assert_true(seconds < 0.25 + 0.5);
+    // A pass that was expected to end in time may be held up by a sanitizer and by others on the machine: hence the
+    // generous bound.
+    assert_true(seconds < 1.0 + 10.0);
     kit.work.options.time_limit = 0.0;
     kit.work.options.spp = stats.spp_done;
     SheenFilm *counted = kit_render(&kit, ALL_LAYERS, NULL);

@@ -3,7 +3,7 @@
 . "$(dirname "$0")/check.sh"
 
 for integrator in irradiance path; do
-    SAME=("${SMALL[@]}" --size 48x40 --integrator "$integrator" --spp 2 --aov "depth,indirect,coverage" --quiet)
+    SAME=("${SMALL[@]}" --size 32x24 --bounces 3 --integrator "$integrator" --spp 2 --aov "depth,indirect,coverage" --quiet)
     for threads in 1 2 7; do
         expect 0 render "$SCENE" -o "$integrator-$threads.exr" -o "$integrator-$threads.png" "${SAME[@]}" \
             --threads $threads --stats stats.json

@@ -26,19 +26,22 @@ refused --output info --output b.exr
 refused "'nosuch'" help nosuch
 refused "'info'" help render info
 
-# Numbers: whole, in their range, and nothing after them.
+# Numbers: whole, in their range, and nothing after them. All forms with one option of each kind, two with the others.
 for number in '' -1 +1 ' 1' 1x 1.5 0x10 nan inf 99999999999999999999; do
-    for option in --spp --light-samples --bounces --gather-rays --threads --seed; do
-        refused "$option" "${R[@]}" "$option=$number"
-    done
+    refused --spp "${R[@]}" "--spp=$number"
+done
+for option in --light-samples --bounces --gather-rays --threads --seed; do
+    for number in -1 1x; do refused "$option" "${R[@]}" "$option=$number"; done
 done
 for option in --spp --light-samples --gather-rays --threads; do refused "$option" "${R[@]}" "$option" 0; done
-for number in '' x nan inf -inf 1e999 0x1 ' 1' 1,5 1.0.0 1e .; do
-    for option in --accuracy --exposure --time-limit; do refused "$option" "${R[@]}" "$option=$number"; done
+for number in '' x nan inf -inf 1e999 0x1 ' 1' 1,5 1.0.0 1e . 0 -0.1; do
+    refused --accuracy "${R[@]}" "--accuracy=$number"
 done
-for number in 0 -0.1 -1; do
-    for option in --accuracy --time-limit; do refused "$option" "${R[@]}" "$option" "$number"; done
+for option in --exposure --time-limit; do
+    for number in nan 1x; do refused "$option" "${R[@]}" "$option" "$number"; done
 done
+refused --accuracy "${R[@]}" --accuracy 1.5
+refused --time-limit "${R[@]}" --time-limit 0
 refused --threads "${R[@]}" --threads 1025
 refused --seed "${R[@]}" --seed 4294967296
 for size in '' 10 10x x10 0x10 10x0 10x10x10 -1x10 10x-1 '10 x 10' 1e1x10 65537x1 65536x65536; do
