@@ -109,16 +109,18 @@ static void shapes_are_laid_out_by_group_and_lights_follow(void **state)
 static void bad_triangles_are_dropped_with_one_warning(void **state)
 {
     Fixture *f = *state;
-    static const Vec3 p[8] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {NAN, 0, 0}, {INFINITY, 0, 0}, {2, 0, 0}, {1e25f, 0, 0}};
-    static const uint32_t t[6][3] = {{0, 1, 2}, {0, 1, 3}, {0, 4, 2}, {0, 1, 5}, {1, 1, 2}, {0, 6, 2}};
-    SheenShape s = {.mesh = {.n_vertices = 7, .n_triangles = 6, .p = p, .triangles = t}, .name = "bad"};
+    static const Vec3 p[10] = {{0, 0, 0}, {1, 0, 0},     {0, 1, 0},     {NAN, 0, 0},   {INFINITY, 0, 0},
+                               {2, 0, 0}, {1e25f, 0, 0}, {0, 5e18f, 0}, {0, 0, -5e18f}};
+    static const uint32_t t[8][3] = {{0, 1, 2}, {0, 1, 3}, {0, 4, 2}, {0, 1, 5},
+                                     {1, 1, 2}, {0, 6, 2}, {0, 1, 7}, {0, 1, 8}};
+    SheenShape s = {.mesh = {.n_vertices = 9, .n_triangles = 8, .p = p, .triangles = t}, .name = "bad"};
     add_gray(f->builder);
     sheen_builder_add_shape(f->builder, &s);
     add_camera(f->builder);
     sheen_builder_add_light(f->builder, &(SheenLight){.kind = SHEEN_LIGHT_ENVIRONMENT, .radiance = rgb_gray(1)});
     assert_int_equal(sheen_builder_commit(&f->builder, &f->scene), SHEEN_OK);
     assert_int_equal(f->messages.n_warnings, 1);
-    assert_non_null(strstr(f->messages.last, "5 of 6 triangles"));
+    assert_non_null(strstr(f->messages.last, "7 of 8 triangles"));
     assert_int_equal(f->scene->shapes[0].mesh.n_triangles, 1);
     assert_int_equal(f->scene->shapes[0].mesh.triangles[0][2], 2);
     assert_float_equal(f->scene->bounds.hi.x, 1.0f, 0.0f);

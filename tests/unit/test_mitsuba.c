@@ -75,10 +75,17 @@ static void rectangle_and_cube(void **state)
         assert_float_equal(r->uv[i].y, 0.5f * (1.0f - r->p[i].y), EPS);
     }
     assert_int_equal(c->n_triangles, 12);
+    float volume = 0.0f; // by the divergence theorem, so that a hole or an overlap shows
     for (uint32_t i = 0; i < 12; ++i) {
         const uint32_t *t = c->triangles[i];
         assert_true(v3_dot(front(c, i), v3_add(c->p[t[0]], v3_add(c->p[t[1]], c->p[t[2]]))) > 2.9f); // outward
+        volume += v3_dot(c->p[t[0]], v3_cross(c->p[t[1]], c->p[t[2]])) / 6.0f;
     }
+    assert_float_equal(volume, 8.0f, 1e-5f);
+    Vec3 middle[6] = {0}; // of each face's triangles: the face's centre only when they make up the square
+    for (uint32_t i = 0; i < 12; ++i)
+        for (int j = 0; j < 3; ++j) middle[i / 2] = v3_mad(middle[i / 2], 1.0f / 6.0f, c->p[c->triangles[i][j]]);
+    for (int i = 0; i < 6; ++i) assert_float_equal(v3_length(middle[i]), 1.0f, EPS);
     // Mitsuba 3: a ray down -z hits the top at (0.3, 0.2, 1) with uv (0.6, 0.65).
     for (uint32_t i = 0; i < c->n_vertices; ++i)
         if (i >= 12 && i < 16) {

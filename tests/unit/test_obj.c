@@ -62,6 +62,28 @@ static void all_index_forms_are_read(void **state)
     assert_int_equal(m.triangles[0][0], m.triangles[2][0]);
 }
 
+/** Corners that share all but one index must stay apart in the hash table, collisions included. */
+static void equal_corners_are_shared_and_no_others(void **state)
+{
+    Kit *k = *state;
+    enum { N = 3000 };
+    char *text = malloc(N * 64), *at = text;
+    assert_non_null(text);
+    at += sprintf(at, "%svn 0 0 1\nvn 0 1 0\n", square);
+    for (int i = 0; i < N; ++i) at += sprintf(at, "vt %d 0\n", i);
+    for (int i = 1; i <= N; ++i) at += sprintf(at, "f 1/%d/1 2/%d/1 1/%d/2\n", i, i, i);
+    MeshData m;
+    SheenStatus s = parse(k, text, &m);
+    free(text);
+    assert_int_equal(s, SHEEN_OK);
+    assert_int_equal(m.n_vertices, 3 * N);
+    for (uint32_t i = 0; i < N; ++i)
+        for (int j = 0; j < 3; ++j) {
+            uint32_t v = m.triangles[i][j];
+            assert_true(m.uv[v].x == (float)i && m.p[v].x == (float)(j == 1) && m.n[v].y == (float)(j == 2));
+        }
+}
+
 static void line_ends_comments_and_groups_do_not_matter(void **state)
 {
     Kit *k = *state;
@@ -206,6 +228,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         KIT_TEST(polygons_become_fans),
         KIT_TEST(all_index_forms_are_read),
+        KIT_TEST(equal_corners_are_shared_and_no_others),
         KIT_TEST(line_ends_comments_and_groups_do_not_matter),
         KIT_TEST(bad_lines_are_refused_with_their_number),
         KIT_TEST(non_finite_vertices_are_read_as_such),
