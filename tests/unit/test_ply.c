@@ -167,8 +167,8 @@ static void smooth_normals_are_weighted_by_angle(void **state)
     kit_assert_v3(m.n[1], v3(0, 0, 1), 1e-6f);
     kit_assert_v3(m.n[3], v3(1, 0, 0), 1e-6f);
     kit_assert_v3(m.n[4], v3(0, 0, 0), 0.0f); // of no face: left to the builder
-    // The angles count, not the areas: with a larger second face, vertex 0 has the same normal.
-    m.p[3] = v3(0, 0, 10);
+    // The angles count, not areas or edges: with a longer first face, vertex 0 has the same normal.
+    m.p[1] = v3(10, 0, 0);
     assert_true(sheen_mesh_smooth(k->arena, &m));
     kit_assert_v3(m.n[0], v3(0.7071068f, 0, 0.7071068f), 1e-6f);
 }
