@@ -3,7 +3,9 @@
 
 #include <stdlib.h>
 
-enum { MAX_DEPTH = 40 };
+// Nodes are no smaller than this share of the largest coordinate: below some ulps the octants of a node coincide, and a
+// sphere would lie in all of them at every level.
+static const float smallest_share = 0x1p-20f;
 
 SheenStatus sheen_octree_create(const Bounds *bounds, SheenOctree **out)
 {
@@ -17,6 +19,7 @@ SheenStatus sheen_octree_create(const Bounds *bounds, SheenOctree **out)
     Vec3 c = bounds_center(bounds);
     if (!v3_finite(c)) c = v3(0, 0, 0);
     t->side = side;
+    t->smallest = smallest_share * maxf(side, maxf(fabsf(c.x), maxf(fabsf(c.y), fabsf(c.z))));
     t->lo = v3(c.x - 0.5f * side, c.y - 0.5f * side, c.z - 0.5f * side);
     t->node_capacity = t->entry_capacity = 64;
     t->nodes = calloc(t->node_capacity, sizeof *t->nodes);
@@ -88,10 +91,9 @@ static bool overlaps(const OctreeEntry *e, Vec3 lo, float side)
     return x * x + y * y + z * z <= e->reach2;
 }
 
-static SheenStatus insert(SheenOctree *t, uint32_t node, Vec3 lo, float side, int depth, float radius,
-                          const OctreeEntry *entry)
+static SheenStatus insert(SheenOctree *t, uint32_t node, Vec3 lo, float side, float radius, const OctreeEntry *entry)
 {
-    if (side <= 4.0f * radius || depth == MAX_DEPTH) return add_entry(t, node, entry);
+    if (side <= 4.0f * radius || side <= t->smallest) return add_entry(t, node, entry);
     float half = 0.5f * side;
     for (unsigned octant = 0; octant < 8; ++octant) {
         Vec3 corner =
@@ -99,7 +101,7 @@ static SheenStatus insert(SheenOctree *t, uint32_t node, Vec3 lo, float side, in
         if (!overlaps(entry, corner, half)) continue;
         uint32_t child = child_of(t, node, octant);
         if (!child) return SHEEN_ERR_NOMEM;
-        SheenStatus status = insert(t, child, corner, half, depth + 1, radius, entry);
+        SheenStatus status = insert(t, child, corner, half, radius, entry);
         if (status != SHEEN_OK) return status;
     }
     return SHEEN_OK;
@@ -107,6 +109,7 @@ static SheenStatus insert(SheenOctree *t, uint32_t node, Vec3 lo, float side, in
 
 SheenStatus sheen_octree_insert(SheenOctree *t, Vec3 center, float radius, uint32_t record)
 {
+    if (!(radius > 0.0f) || !v3_finite(center)) return SHEEN_OK; // holds no point
     OctreeEntry entry = {center, radius * radius, record, 0};
-    return insert(t, 0, t->lo, t->side, 0, radius, &entry);
+    return insert(t, 0, t->lo, t->side, radius, &entry);
 }

@@ -24,8 +24,9 @@ typedef struct OctreeNode {
 } OctreeNode;
 
 struct SheenOctree {
-    Vec3 lo;    // lower corner of the root
-    float side; // of the root, metres
+    Vec3 lo;        // lower corner of the root
+    float side;     // of the root, metres
+    float smallest; // side below which no node is divided
     OctreeNode *nodes;
     OctreeEntry *entries;
     uint32_t n_nodes, n_entries; // node 0 is the root, entry 0 is unused
@@ -36,7 +37,10 @@ struct SheenOctree {
 SHEEN_NODISCARD SheenStatus sheen_octree_create(const Bounds *bounds, SheenOctree **out);
 void sheen_octree_destroy(SheenOctree **tree);
 
-/** Adds a sphere to the nodes whose side is two to four times its radius and that it overlaps. */
+/**
+ * Adds a sphere to the nodes whose side is two to four times its radius and that it overlaps; the smallest spheres to
+ * the smallest nodes. One that holds no point, without radius or not finite, is left out.
+ */
 SHEEN_NODISCARD SheenStatus sheen_octree_insert(SheenOctree *tree, Vec3 center, float radius, uint32_t record);
 
 /** Bytes in use. */
