@@ -35,7 +35,7 @@ void sheen_irradiance_cache_destroy(SheenIrradianceCache **cache)
 typedef struct Clamp {
     SheenIrradianceCache *cache;
     Vec3 p;
-    float R;        // search radius
+    float R;        // first pass: search radius
     float smallest; // out, first pass: least R_j + distance
     float limit;    // in, second pass: neighbors shrink to limit + distance
     bool shrink;    // second pass
@@ -45,20 +45,21 @@ static void clamp_entry(Clamp *c, const OctreeEntry *e)
 {
     IrradianceRecord *r = &c->cache->records[e->record];
     float d = v3_length(v3_sub(r->p, c->p));
-    if (d > c->R) return;
     if (c->shrink)
         r->R = maxf(r->R_min, minf(r->R, c->limit + d));
     else
         c->smallest = minf(c->smallest, r->R + d);
 }
 
-// Visits all entries of the nodes that the search sphere's box overlaps. A record may be met more than once: both
-// passes are idempotent.
+// Visits all entries of the nodes near p. The first pass looks for records nearer than R: others bound nothing. The
+// second looks for records whose own R is more than their distance; below the root these have at most half a node's
+// side as reach a R. A record may be met more than once: both passes are idempotent.
 static void clamp_visit(Clamp *c, uint32_t node, Vec3 lo, float side)
 {
     const SheenOctree *t = c->cache->octree;
-    if (c->p.x + c->R < lo.x || c->p.x - c->R > lo.x + side || c->p.y + c->R < lo.y || c->p.y - c->R > lo.y + side ||
-        c->p.z + c->R < lo.z || c->p.z - c->R > lo.z + side)
+    float R = node == 0 ? INFINITY : c->shrink ? 0.51f * side / c->cache->accuracy : c->R;
+    if (c->p.x + R < lo.x || c->p.x - R > lo.x + side || c->p.y + R < lo.y || c->p.y - R > lo.y + side ||
+        c->p.z + R < lo.z || c->p.z - R > lo.z + side)
         return;
     for (uint32_t e = t->nodes[node].entries; e; e = t->entries[e].next) clamp_entry(c, &t->entries[e]);
     float half = 0.5f * side;

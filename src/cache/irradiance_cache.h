@@ -24,8 +24,8 @@ SHEEN_NODISCARD SheenStatus sheen_irradiance_cache_create(float accuracy, bool n
 void sheen_irradiance_cache_destroy(SheenIrradianceCache **cache);
 
 /**
- * Stores a copy of the record. With neighbor clamping its radius first becomes at most R_j + distance of each record j
- * within R, and those records' radii at most R + distance, none below its own R_min.
+ * Stores a copy of the record. With neighbor clamping its radius first becomes at most R_j + distance of each record j,
+ * and then those records' radii at most R + distance, none below its own R_min.
  * Source: krivanek2006-making-caching-practical sec. 5.2, with radii clamped to their minimum first: a contact's tiny
  * unclamped radius would otherwise push all its neighbors to their minimum too.
  */

@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: Apache-2.0
+// Irradiance records: weight, where they serve, what they predict, clamping of their radii.
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "base/hash.h"
+#include "cache/irradiance_cache.h"
+#include "math/frame.h"
+
+#include <stdlib.h>
+
+static const float A = 0.15f;
+static const Bounds box = {{-1.0f, -1.0f, -1.0f}, {1.0f, 1.0f, 1.0f}};
+
+static float random_unit(uint32_t i, uint32_t use)
+{
+    return hash_to_unit(hash_combine(i, use));
+}
+static Vec3 random_point(uint32_t i)
+{
+    return v3(2.0f * random_unit(i, 0) - 1.0f, 2.0f * random_unit(i, 1) - 1.0f, 2.0f * random_unit(i, 2) - 1.0f);
+}
+static Vec3 random_normal(uint32_t i)
+{
+    return v3_normalize(v3(random_unit(i, 3) - 0.5f, random_unit(i, 4) - 0.5f, random_unit(i, 5) - 0.5f));
+}
+// n turned by `angle` about an axis across it.
+static Vec3 turned(Vec3 n, float angle)
+{
+    Frame f = frame_from_normal(n);
+    return v3_add(v3_scale(n, cosf(angle)), v3_scale(f.t, sinf(angle)));
+}
+
+static SheenIrradianceCache *cache_begin(bool clamping)
+{
+    SheenIrradianceCache *c = NULL;
+    assert_int_equal(sheen_irradiance_cache_create(A, clamping, &box, &c), SHEEN_OK);
+    return c;
+}
+static void insert(SheenIrradianceCache *c, const IrradianceRecord *r)
+{
+    assert_int_equal(sheen_irradiance_cache_insert(c, r), SHEEN_OK);
+}
+static IrradianceRecord flat_record(Vec3 p, Vec3 n, float R, float E)
+{
+    return (IrradianceRecord){.p = p, .n = n, .R = R, .R_min = 0.0f, .E = rgb_gray(E)};
+}
+
+// ---- one record -------------------------------------------------------------------------------------------------
+
+static void test_weight(void **state)
+{
+    (void)state;
+    // 1 / (0.2 / 2 + sqrt(1 - cos 5 degrees)), computed in double precision.
+    float cos5 = cosf(5.0f * SHEEN_PI / 180.0f);
+    // 1 - cos is known to one part in 60,000 only when the cosine is a float.
+    assert_true(fabs((double)record_weight(2.0f, 0.04f, cos5) - 6.184784187721485) < 2e-4);
+    assert_true(fabsf(record_weight(2.0f, 0.04f, 1.0f) - 10.0f) < 1e-5f);
+    assert_true(isinf(record_weight(2.0f, 0.0f, 1.0f)));
+    assert_true(isinf(record_weight(2.0f, 0.0f, 1.0000001f))); // rounding makes no NaN of equal normals
+    assert_true(record_weight(2.0f, 0.0f, 0.0f) == 1.0f);
+    assert_true(record_weight(2.0f, 0.0f, -1.0f) < 1.0f); // the other side of a wall is out of reach for every a <= 1
+}
+
+// A plane far from the origin: rounding puts its points in front of each other and behind. All pass; a step pitted
+// clearly below the record's plane does not, one above does.
+static void test_records_in_front(void **state)
+{
+    (void)state;
+    for (uint32_t i = 0; i < 2000; ++i) {
+        Vec3 n = random_normal(i), q = v3_scale(random_point(i), 30.0f);
+        Frame f = frame_from_normal(n);
+        IrradianceRecord r = flat_record(q, n, 1.0f, 1.0f);
+        float x = A * (random_unit(i, 6) - 0.5f), y = A * (random_unit(i, 7) - 0.5f);
+        Vec3 p = v3_mad(v3_mad(q, x, f.t), y, f.b);
+        assert_false(record_in_front(&r, p, n, A, 0.0f));
+        assert_true(record_in_front(&r, v3_mad(p, -0.05f * A, n), n, A, 0.0f));
+        assert_false(record_in_front(&r, v3_mad(p, -0.05f * A, n), n, A, 0.05f * A)); // the slack adds to the tolerance
+        assert_true(record_in_front(&r, v3_mad(p, -0.1f * A, n), n, A, 0.05f * A));
+        assert_false(record_in_front(&r, v3_mad(p, 0.05f * A, n), n, A, 0.0f));
+    }
+}
+
+// E = c + g.p per channel: the extrapolation is exact but for rounding.
+static void test_translation_is_exact_for_linear_fields(void **state)
+{
+    (void)state;
+    for (uint32_t i = 0; i < 1000; ++i) {
+        Vec3 n = random_normal(i), q = random_point(i);
+        Frame f = frame_from_normal(n);
+        IrradianceRecord r = {.p = q, .n = n, .R = 1.0f};
+        float E[3];
+        for (uint32_t c = 0; c < 3; ++c) {
+            r.translation[c] = v3_add(v3_scale(f.t, random_unit(i, 10 + c)), v3_scale(f.b, -random_unit(i, 20 + c)));
+            E[c] = 3.0f + v3_dot(r.translation[c], q);
+        }
+        r.E = rgb(E[0], E[1], E[2]);
+        Vec3 p = v3_mad(v3_mad(q, 0.2f * random_unit(i, 6), f.t), 0.2f * random_unit(i, 7), f.b);
+        Rgb got = record_extrapolate(&r, p, n);
+        float value[3] = {got.r, got.g, got.b};
+        for (int c = 0; c < 3; ++c) assert_true(fabsf(value[c] - 3.0f - v3_dot(r.translation[c], p)) < 4e-6f);
+    }
+}
+
+// Sky of radiance 1 + s.d in direction d: E(n) = pi + 2 pi / 3 s.n, and the gradient of rotation is the integral of
+// L (n x d) over the hemisphere, 2 pi / 3 n x s. What is left is of second order: 2 pi / 3 |s.n| (1 - cos).
+static void test_rotation_is_first_order(void **state)
+{
+    (void)state;
+    Vec3 s = v3(0.3f, -0.5f, 0.4f);
+    for (uint32_t i = 0; i < 1000; ++i) {
+        Vec3 n = random_normal(i), m = turned(n, 0.2f * random_unit(i, 6));
+        Vec3 gradient = v3_scale(v3_cross(n, s), 2.0f * SHEEN_PI / 3.0f);
+        float E = SHEEN_PI + 2.0f * SHEEN_PI / 3.0f * v3_dot(s, n);
+        IrradianceRecord r = {.n = n, .R = 1.0f, .E = rgb_gray(E), .rotation = {gradient, gradient, gradient}};
+        float exact = SHEEN_PI + 2.0f * SHEEN_PI / 3.0f * v3_dot(s, m), got = record_extrapolate(&r, r.p, m).g;
+        float left = 2.0f * SHEEN_PI / 3.0f * fabsf(v3_dot(s, n)) * (1.0f - v3_dot(n, m));
+        assert_true(fabsf(got - exact) <= left + 4e-6f);
+    }
+}
+
+static void test_never_negative(void **state)
+{
+    (void)state;
+    IrradianceRecord r = flat_record(v3(0, 0, 0), v3(0, 0, 1), 1.0f, 1.0f);
+    r.translation[0] = v3(-100, 0, 0);
+    r.translation[1] = v3(100, 0, 0);
+    r.rotation[2] = v3(0, -100, 0);
+    Rgb E = record_extrapolate(&r, v3(0.1f, 0, 0), v3_normalize(v3(0.2f, 0, 1)));
+    assert_true(E.r == 0.0f && E.b == 0.0f);
+    assert_true(fabsf(E.g - 11.0f) < 1e-4f);
+}
+
+// ---- many records -----------------------------------------------------------------------------------------------
+
+static void fill_random(SheenIrradianceCache *c, uint32_t n, IrradianceRecord copy[])
+{
+    for (uint32_t i = 0; i < n; ++i) {
+        float R = 0.2f * expf(3.0f * random_unit(i, 8));
+        copy[i] = flat_record(random_point(i), turned(v3(0, 0, 1), 0.1f * random_unit(i, 9)), R, random_unit(i, 10));
+        copy[i].R_min = R * random_unit(i, 11);
+        insert(c, &copy[i]);
+    }
+}
+
+// Whether a record serves a point, by its definition; 0 when rounding decides.
+static int serves(const IrradianceRecord *r, Vec3 p, Vec3 n)
+{
+    float d2 = v3_length2(v3_sub(p, r->p)), over = record_weight(r->R, d2, v3_dot(n, r->n)) - 1.0f / A;
+    float height = v3_dot(v3_sub(p, r->p), v3_add(n, r->n)) * 0.5f + 0.02f * A * r->R;
+    if (fabsf(over) < 1e-3f || fabsf(height) < 1e-6f) return 0;
+    return over > 0.0f && height > 0.0f ? 1 : -1;
+}
+
+static void find_against_all(bool clamping)
+{
+    enum { N = 1500 };
+    static IrradianceRecord made[N];
+    SheenIrradianceCache *c = cache_begin(clamping);
+    fill_random(c, N, made);
+    size_t found_any = 0;
+    for (uint32_t i = 0; i < 2000; ++i) {
+        Vec3 p = random_point(i + N), n = turned(v3(0, 0, 1), 0.1f * random_unit(i, 12));
+        Contributors found;
+        sheen_irradiance_cache_find(c, p, n, 0.0f, &found);
+        assert_in_range(found.n, 0, SHEEN_CONTRIBUTORS_MAX - 1); // all of them fit
+        unsigned char met[N] = {0};
+        float sum = 0.0f, least = INFINITY;
+        for (unsigned k = 0; k < found.n; ++k) {
+            const IrradianceRecord *r = &c->records[found.record[k]];
+            met[found.record[k]] = 1;
+            sum += found.weight[k];
+            float w = record_weight(r->R, v3_length2(v3_sub(p, r->p)), v3_dot(n, r->n)) - 1.0f / A;
+            assert_true(found.weight[k] > 0.0f && fabsf(found.weight[k] - w) <= 1e-5f * w);
+        }
+        assert_true(fabsf(sum - found.weight_sum) <= 1e-5f * sum);
+        for (uint32_t j = 0; j < N; ++j) {
+            const IrradianceRecord *r = &c->records[j];
+            int expected = serves(r, p, n);
+            if (expected) assert_int_equal(met[j], expected > 0);
+            float R = r->R + v3_length(v3_sub(p, r->p));
+            least = minf(least, R);
+            if (met[j]) assert_true(found.radius <= R * 1.000001f);
+        }
+        assert_true(found.radius >= least * 0.999999f);
+        found_any += found.n > 0;
+    }
+    assert_true(found_any > 300); // the comparison was about something
+    sheen_irradiance_cache_destroy(&c);
+    assert_null(c);
+}
+
+static void test_find(void **state)
+{
+    (void)state;
+    find_against_all(false);
+    find_against_all(true);
+}
+
+static void test_empty_cache(void **state)
+{
+    (void)state;
+    SheenIrradianceCache *c = cache_begin(false);
+    Contributors found;
+    sheen_irradiance_cache_find(c, v3(0, 0, 0), v3(0, 0, 1), 0.0f, &found);
+    assert_int_equal(found.n, 0);
+    assert_true(found.weight_sum == 0.0f && isinf(found.radius));
+    assert_true(rgb_is_black(sheen_irradiance_cache_interpolate(c, &found, v3(0, 0, 0), v3(0, 0, 1))));
+    sheen_irradiance_cache_destroy(&c);
+    sheen_irradiance_cache_destroy(NULL);
+}
+
+// More records than a point has room for: some are left out, none is written past the end.
+static void test_too_many_contributors(void **state)
+{
+    (void)state;
+    SheenIrradianceCache *c = cache_begin(false);
+    for (uint32_t i = 0; i < 100; ++i) {
+        IrradianceRecord r = flat_record(v3(1e-4f * (float)i, 0, 0), v3(0, 0, 1), 1.0f, 2.0f);
+        insert(c, &r);
+    }
+    Contributors found;
+    sheen_irradiance_cache_find(c, v3(0, 0, 0), v3(0, 0, 1), 0.0f, &found);
+    assert_int_equal(found.n, SHEEN_CONTRIBUTORS_MAX);
+    assert_true(fabsf(sheen_irradiance_cache_interpolate(c, &found, v3(0, 0, 0), v3(0, 0, 1)).r - 2.0f) < 1e-5f);
+    sheen_irradiance_cache_destroy(&c);
+}
+
+static void test_interpolation_at_a_record(void **state)
+{
+    (void)state;
+    SheenIrradianceCache *c = cache_begin(false);
+    IrradianceRecord r = flat_record(v3(0, 0, 0), v3(0, 0, 1), 1.0f, 1.0f);
+    insert(c, &r);
+    r = flat_record(v3(0.05f, 0, 0), v3(0, 0, 1), 1.0f, 3.0f);
+    insert(c, &r);
+    Contributors found;
+    for (int i = 0; i < 2; ++i) {
+        const IrradianceRecord *at = &c->records[i];
+        sheen_irradiance_cache_find(c, at->p, at->n, 0.0f, &found);
+        assert_int_equal(found.n, 2);
+        // The other's weight is 1 / 0.05 - 1 / 0.15 against a million.
+        Rgb E = sheen_irradiance_cache_interpolate(c, &found, at->p, at->n);
+        assert_true(fabsf(E.g - at->E.g) < 1e-4f);
+    }
+    // Half way both count alike.
+    Vec3 middle = v3(0.025f, 0, 0);
+    sheen_irradiance_cache_find(c, middle, r.n, 0.0f, &found);
+    assert_true(fabsf(sheen_irradiance_cache_interpolate(c, &found, middle, r.n).g - 2.0f) < 1e-4f);
+    sheen_irradiance_cache_destroy(&c);
+}
+
+// A record of 1 among one of 0 that reaches farther: along a line and along a turn the mean has no step where the
+// influence of the first ends. A weight of 1/a there would make it one of about a half.
+static void test_no_seams(void **state)
+{
+    (void)state;
+    SheenIrradianceCache *c = cache_begin(false);
+    Vec3 up = v3(0, 0, 1);
+    IrradianceRecord near = flat_record(v3(0, 0, 0), up, 1.0f, 1.0f),
+                     far = flat_record(v3(0.02f, 0, 0), up, 2.0f, 0.0f);
+    insert(c, &near);
+    far.n = turned(up, 0.08f);
+    insert(c, &far);
+    enum { STEPS = 2000 };
+    for (int way = 0; way < 2; ++way) {
+        float before = 1.0f;
+        bool ended = false;
+        for (int i = 0; i <= STEPS; ++i) {
+            float t = (float)i / STEPS;
+            Vec3 p = way ? v3(0, 0, 0) : v3(0.2f * t, 0, 0);
+            Vec3 n = way ? turned(up, 0.25f * t) : up;
+            Contributors found;
+            sheen_irradiance_cache_find(c, p, n, 0.0f, &found);
+            assert_in_range(found.n, 1, 2);
+            float E = sheen_irradiance_cache_interpolate(c, &found, p, n).g;
+            // The function falls from 1 to 0 with a slope of some 10 at most: 0.005 a step.
+            assert_true(fabsf(E - before) < 0.02f);
+            before = E;
+            ended = ended || found.n == 1;
+        }
+        assert_true(ended && before == 0.0f); // the end of the influence lies on the way
+    }
+    sheen_irradiance_cache_destroy(&c);
+}
+
+// ---- neighbor clamping ------------------------------------------------------------------------------------------
+
+static void test_clamping_keeps_the_triangle_inequality(void **state)
+{
+    (void)state;
+    enum { N = 600 };
+    static IrradianceRecord made[N];
+    SheenIrradianceCache *c = cache_begin(true);
+    fill_random(c, N, made);
+    size_t shrunk = 0, held = 0;
+    for (uint32_t i = 0; i < N; ++i) {
+        const IrradianceRecord *r = &c->records[i];
+        assert_true(r->R >= made[i].R_min && r->R <= made[i].R);
+        shrunk += r->R < made[i].R;
+        held += r->R == made[i].R_min;
+        for (uint32_t j = 0; j < N && r->R > r->R_min; ++j) {
+            float d = v3_length(v3_sub(r->p, c->records[j].p));
+            assert_true(r->R <= (c->records[j].R + d) * 1.000001f);
+        }
+    }
+    assert_true(shrunk > N / 10 && held > 10);
+    sheen_irradiance_cache_destroy(&c);
+}
+
+// A corner's small record and a wall's large one know each other in either order of insertion.
+static void test_clamping_in_either_order(void **state)
+{
+    (void)state;
+    for (int order = 0; order < 2; ++order) {
+        SheenIrradianceCache *c = cache_begin(true);
+        IrradianceRecord small = flat_record(v3(0, 0, 0), v3(0, 0, 1), 0.1f, 1.0f);
+        IrradianceRecord large = flat_record(v3(0.5f, 0, 0), v3(0, 0, 1), 4.0f, 1.0f);
+        insert(c, order ? &small : &large);
+        insert(c, order ? &large : &small);
+        assert_true(c->records[order ? 0 : 1].R == 0.1f);
+        assert_true(fabsf(c->records[order ? 1 : 0].R - 0.6f) < 1e-6f);
+        sheen_irradiance_cache_destroy(&c);
+    }
+}
+
+static void test_without_clamping_radii_stay(void **state)
+{
+    (void)state;
+    enum { N = 600 };
+    static IrradianceRecord made[N];
+    SheenIrradianceCache *c = cache_begin(false);
+    fill_random(c, N, made);
+    assert_int_equal(c->n_records, N);
+    assert_memory_equal(c->records, made, sizeof made);
+    sheen_irradiance_cache_destroy(&c);
+}
+
+static void test_bytes(void **state)
+{
+    (void)state;
+    SheenIrradianceCache *c = cache_begin(false);
+    uint64_t before = sheen_irradiance_cache_bytes(c);
+    for (uint32_t i = 0; i < 2000; ++i) {
+        IrradianceRecord r = flat_record(random_point(i), v3(0, 0, 1), 0.3f, 1.0f);
+        insert(c, &r);
+        uint64_t now = sheen_irradiance_cache_bytes(c);
+        assert_true(now >= before + sizeof r);
+        before = now;
+    }
+    sheen_irradiance_cache_destroy(&c);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_weight),
+        cmocka_unit_test(test_records_in_front),
+        cmocka_unit_test(test_translation_is_exact_for_linear_fields),
+        cmocka_unit_test(test_rotation_is_first_order),
+        cmocka_unit_test(test_never_negative),
+        cmocka_unit_test(test_find),
+        cmocka_unit_test(test_empty_cache),
+        cmocka_unit_test(test_too_many_contributors),
+        cmocka_unit_test(test_interpolation_at_a_record),
+        cmocka_unit_test(test_no_seams),
+        cmocka_unit_test(test_clamping_keeps_the_triangle_inequality),
+        cmocka_unit_test(test_clamping_in_either_order),
+        cmocka_unit_test(test_without_clamping_radii_stay),
+        cmocka_unit_test(test_bytes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
