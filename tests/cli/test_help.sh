@@ -36,6 +36,18 @@ for command in $commands; do
     fi
 done
 
+# The defaults that help tells are those with which a render without options runs, where they are one word.
+expect 0 render "$SCENE" -o a.png --size 8x8 --spp 1 --quiet --stats stats.json
+expect 0 render --help; mv out long
+n_defaults=0
+while read -r option value; do
+    told=$(awk -v o="--$option" '/^  [^ ]/ { on = index(" " $0 " ", " " o " ") } on && /^ *Default: [^ ]*$/ { print $2 }' long)
+    if [ -z "$told" ] || [ "$told" = none ]; then continue; fi
+    [ "$told" = "$value" ] || fail "help tells that the default of --$option is $told, but it is $value"
+    n_defaults=$((n_defaults + 1))
+done < <(sed -n '/"options": {/,/^  }/s/^ *"\([a-z-]*\)": "\{0,1\}\([^",[]*\)"\{0,1\},\{0,1\}$/\1 \2/p' stats.json)
+[ $n_defaults -ge 9 ] || fail "only $n_defaults defaults were compared"
+
 # What cannot be printed is an error.
 if [ -w /dev/full ]; then
     "$SHEEN" help >/dev/full 2>err
