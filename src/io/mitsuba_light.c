@@ -117,8 +117,7 @@ void sheen_mi_emitter(Mitsuba *m, SheenXml *e)
             if (!m->status) sheen_mi_report_unused(m, e);
             return;
         }
-    sheen_xml_warn(m->log, e,
-                   sheen_mi_same(type, "area") ? "the light '%s' is on no shape and is left out"
-                                               : "the light '%s' is not supported and is left out",
-                   type);
+    bool area = sheen_mi_same(type, "area");
+    if (area && sheen_xml_attribute(e, "id")) return; // for shapes to refer to
+    sheen_xml_warn(m->log, e, "the light '%s' is %s and is left out", type, area ? "on no shape" : "not supported");
 }
