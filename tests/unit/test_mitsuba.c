@@ -477,8 +477,12 @@ static void lights(void **state)
         "<emitter type=\"directional\"><vector name=\"direction\" x=\"0\" y=\"-2\" z=\"0\"/>"
         "<rgb name=\"irradiance\" value=\"3\"/></emitter>"
         "<shape type=\"rectangle\"><emitter type=\"area\"><rgb name=\"radiance\" value=\"1 2 3\"/></emitter></shape>"
-        "<emitter type=\"collimated\"/>");
-    assert_int_equal(s->n_lights, 4);
+        "<emitter type=\"collimated\"/><emitter type=\"area\"/>"
+        "<emitter type=\"area\" id=\"lamp\"><rgb name=\"radiance\" value=\"8\"/></emitter>"
+        "<shape type=\"disk\"><ref id=\"lamp\"/></shape>");
+    assert_int_equal(s->n_lights, 5);
+    assert_float_equal(s->lights[4].radiance.r, 8.0f, 0.0f);
+    assert_int_equal(k->n_warnings, 3); // collimated, area on no shape, no camera
     kit_assert_v3(s->lights[0].position, v3(1, 2, 3), 0.0f);
     assert_float_equal(s->lights[0].radiance.g, 7.0f, 0.0f);
     kit_assert_v3(s->lights[1].position, v3(0, 5, 0), 0.0f);
