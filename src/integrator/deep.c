@@ -388,10 +388,11 @@ void sheen_deep_destroy(SheenDeep **deep)
 
 // ---- reading ----------------------------------------------------------------------------------------------------
 
-static Rgb interpolate(const SheenDeep *d, const MemoCell *cell, int level)
+// @return false when no record covers the point.
+static bool interpolate(const SheenDeep *d, Vec3 p, Vec3 n, float slack, int level, Rgb *E)
 {
     Contributors c;
-    sheen_irradiance_cache_find(d->cache, cell->center, cell->n, cell->depth, &c);
+    sheen_irradiance_cache_find(d->cache, p, n, slack, &c);
     Rgb sum = rgb_gray(0.0f);
     for (unsigned i = 0; i < c.n; ++i) {
         IrradianceRecord r = d->cache->records[c.record[i]];
@@ -399,15 +400,16 @@ static Rgb interpolate(const SheenDeep *d, const MemoCell *cell, int level)
         r.E = light->E;
         memcpy(r.translation, light->translation, sizeof r.translation);
         memcpy(r.rotation, light->rotation, sizeof r.rotation);
-        sum = rgb_mad(sum, c.weight[i], record_extrapolate(&r, cell->center, cell->n));
+        sum = rgb_mad(sum, c.weight[i], record_extrapolate(&r, p, n));
     }
-    return c.n ? rgb_scale(sum, 1.0f / c.weight_sum) : sum;
+    *E = c.n ? rgb_scale(sum, 1.0f / c.weight_sum) : sum;
+    return c.n > 0;
 }
 
 DeepQuery sheen_deep_ask(const SheenDeep *d, Vec3 p, Vec3 n, float distance, int k, uint32_t hash)
 {
     if (k < 0) return (DeepQuery){.level = -1};
-    DeepQuery query = {.level = (int)d->bounces - k};
+    DeepQuery query = {.p = p, .n = n, .level = (int)d->bounces - k};
     float size = maxf(cell_per_distance * distance, cell_min * d->scale);
     Frame f = frame_from_normal(n);
     float u = hash_to_unit(hash) - 0.5f, v = hash_to_unit(hash_u32(hash ^ 0x2545f491u)) - 0.5f;
@@ -419,10 +421,14 @@ DeepQuery sheen_deep_ask(const SheenDeep *d, Vec3 p, Vec3 n, float distance, int
 
 Rgb sheen_deep_answer(const SheenDeep *d, const DeepQuery *query)
 {
+    const Rgb uncovered = rgb_gray(-1.0f); // in the memo: no record covers the cell's centre
     Rgb E = rgb_gray(0.0f);
-    if (query->level < 0 || sheen_memo_get(d->memo, query->cell.key, &E)) return E;
-    E = interpolate(d, &query->cell, query->level);
-    sheen_memo_put(d->memo, query->cell.key, E);
+    if (query->level < 0) return E;
+    if (!sheen_memo_get(d->memo, query->cell.key, &E)) {
+        if (!interpolate(d, query->cell.center, query->cell.n, query->cell.depth, query->level, &E)) E = uncovered;
+        sheen_memo_put(d->memo, query->cell.key, E);
+    }
+    if (E.r < 0.0f) interpolate(d, query->p, query->n, 0.0f, query->level, &E);
     return E;
 }
 

@@ -27,12 +27,14 @@ enum { SHEEN_DEEP_LEVELS = 3 };
 /** A look-up in the memo grid, in two steps so that many of them wait for memory together. */
 typedef struct DeepQuery {
     MemoCell cell;
+    Vec3 p, n; // where it was asked
     int level; // which of the solutions; below 0 for none: the answer is black
 } DeepQuery;
 
 /**
  * Asks for the irradiance of the sky and of up to k bounces at a gather's hit, without direct light, from the memo
- * grid: the mean of a cell of the size of what a ray of the gather stands for.
+ * grid: the mean of a cell of the size of what a ray of the gather stands for; at the point itself where the cell's
+ * centre lies beyond all records, over an edge or off a curved surface.
  * @param distance  length of the ray, metres
  * @param k         in (bounces - SHEEN_DEEP_LEVELS, bounces]; below 0 it is black
  * @param hash      moves the look-up by up to half a cell, so that the cells' edges do not show

@@ -169,7 +169,7 @@ static void find_against_all(bool clamping)
         sheen_irradiance_cache_find(c, p, n, 0.0f, &found);
         assert_in_range(found.n, 0, SHEEN_CONTRIBUTORS_MAX - 1); // all of them fit
         unsigned char met[N] = {0};
-        float sum = 0.0f, least = INFINITY;
+        float sum = 0.0f;
         for (unsigned k = 0; k < found.n; ++k) {
             const IrradianceRecord *r = &c->records[found.record[k]];
             met[found.record[k]] = 1;
@@ -182,11 +182,7 @@ static void find_against_all(bool clamping)
             const IrradianceRecord *r = &c->records[j];
             int expected = serves(r, p, n);
             if (expected) assert_int_equal(met[j], expected > 0);
-            float R = r->R + v3_length(v3_sub(p, r->p));
-            least = minf(least, R);
-            if (met[j]) assert_true(found.radius <= R * 1.000001f);
         }
-        assert_true(found.radius >= least * 0.999999f);
         found_any += found.n > 0;
     }
     assert_true(found_any > 300); // the comparison was about something
@@ -208,7 +204,7 @@ static void test_empty_cache(void **state)
     Contributors found;
     sheen_irradiance_cache_find(c, v3(0, 0, 0), v3(0, 0, 1), 0.0f, &found);
     assert_int_equal(found.n, 0);
-    assert_true(found.weight_sum == 0.0f && isinf(found.radius));
+    assert_true(found.weight_sum == 0.0f);
     assert_true(rgb_is_black(sheen_irradiance_cache_interpolate(c, &found, v3(0, 0, 0), v3(0, 0, 1))));
     sheen_irradiance_cache_destroy(&c);
     sheen_irradiance_cache_destroy(NULL);

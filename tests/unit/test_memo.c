@@ -141,8 +141,8 @@ static void test_no_collisions(void **state)
 
 static uint64_t key_of(uint64_t i)
 {
-    // Few low bits, so that keys meet in the same slots and probing is at work; never 0.
-    return (uint64_t)hash_u32((uint32_t)i) << 32 | (i % 5000 * 7 + 1);
+    // Four keys to each of 5000 slots, so that keys meet and probing is at work; never 0.
+    return (uint64_t)hash_u32((uint32_t)i) << 32 | (i % 5000 * 16 + 1);
 }
 static Rgb value_of(uint64_t i)
 {
@@ -201,26 +201,23 @@ static void test_threads(void **state)
     sheen_memo_destroy(NULL);
 }
 
-// A full table forgets what comes last and answers the rest; it neither hangs nor overwrites.
+// A full table forgets some and answers the rest; it neither hangs nor mixes them up.
 static void test_full_table(void **state)
 {
     (void)state;
-    enum { N = 600000 };
+    enum { N = 2500000 };
     SheenMemo *memo = NULL;
     assert_int_equal(sheen_memo_create(&memo), SHEEN_OK);
     for (uint64_t i = 1; i <= N; ++i) sheen_memo_put(memo, i * 0x9e3779b97f4a7c15u, value_of(i));
-    size_t kept = 0, first_missing = 0;
+    size_t kept = 0, wrong = 0;
     for (uint64_t i = 1; i <= N; ++i) {
         Rgb v;
-        if (!sheen_memo_get(memo, i * 0x9e3779b97f4a7c15u, &v)) {
-            if (!first_missing) first_missing = (size_t)i;
-            continue;
-        }
-        assert_true(same(v, value_of(i)));
+        if (!sheen_memo_get(memo, i * 0x9e3779b97f4a7c15u, &v)) continue;
+        wrong += !same(v, value_of(i));
         ++kept;
     }
-    assert_true(kept > 10000 && kept < N);
-    assert_int_equal(first_missing, kept + 1); // those that came first
+    assert_true(kept > 100000 && kept < N); // it was full
+    assert_int_equal(wrong, 0);
     sheen_memo_destroy(&memo);
 }
 
