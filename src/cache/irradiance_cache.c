@@ -104,9 +104,8 @@ static void consider(const SheenIrradianceCache *c, const OctreeEntry *e, Vec3 p
 {
     Vec3 v = v3_sub(p, e->center);
     float d2 = v3_length2(v);
-    const IrradianceRecord *r = &c->records[e->record];
-    out->radius = minf(out->radius, r->R + sqrtf(d2));
     if (d2 >= e->reach2) return;
+    const IrradianceRecord *r = &c->records[e->record];
     float w = record_weight(r->R, d2, v3_dot(n, r->n)) - 1.0f / c->accuracy;
     if (!(w > 0.0f) || record_in_front(r, p, n, c->accuracy, slack) || out->n == SHEEN_CONTRIBUTORS_MAX) return;
     w = minf(w, weight_max);
@@ -119,11 +118,22 @@ void sheen_irradiance_cache_find(const SheenIrradianceCache *c, Vec3 p, Vec3 n, 
 {
     out->n = 0;
     out->weight_sum = 0.0f;
-    out->radius = INFINITY;
     const SheenOctree *t = c->octree;
     for (OctreeWalk walk = octree_walk(t); walk.node != SHEEN_OCTREE_END; octree_descend(t, &walk, p))
         for (uint32_t e = t->nodes[walk.node].entries; e; e = t->entries[e].next)
             consider(c, &t->entries[e], p, n, slack, out);
+}
+
+float sheen_irradiance_cache_expect_radius(const SheenIrradianceCache *c, Vec3 p)
+{
+    float least = INFINITY;
+    const SheenOctree *t = c->octree;
+    for (OctreeWalk walk = octree_walk(t); walk.node != SHEEN_OCTREE_END; octree_descend(t, &walk, p))
+        for (uint32_t e = t->nodes[walk.node].entries; e; e = t->entries[e].next) {
+            const OctreeEntry *entry = &t->entries[e];
+            least = minf(least, sqrtf(entry->reach2) / c->accuracy + v3_length(v3_sub(p, entry->center)));
+        }
+    return least;
 }
 
 Rgb sheen_irradiance_cache_interpolate(const SheenIrradianceCache *c, const Contributors *found, Vec3 p, Vec3 n)

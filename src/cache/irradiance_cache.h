@@ -38,8 +38,6 @@ typedef struct Contributors {
     uint32_t record[SHEEN_CONTRIBUTORS_MAX];
     float weight[SHEEN_CONTRIBUTORS_MAX]; // w - 1/a > 0: continuous where a record's influence ends
     float weight_sum;                     // 0 when no record covers the point
-    float radius; // least R_j + distance over the records met on the way: what R a record here would have.
-                  // INFINITY where none was met
 } Contributors;
 
 /**
@@ -49,6 +47,13 @@ typedef struct Contributors {
  * @param slack  metres that p may lie off its surface: added to the tolerance of the test for points in front
  */
 void sheen_irradiance_cache_find(const SheenIrradianceCache *cache, Vec3 p, Vec3 n, float slack, Contributors *out);
+
+/**
+ * The radius R that a record at p may be expected to have: the least R_j + distance over the records that lie near it
+ * in the octree, with their radii as inserted. INFINITY where there is none. Thread-safe. Source:
+ * krivanek2006-making-caching-practical sec. 5.2, its inequality used as a guess.
+ */
+float sheen_irradiance_cache_expect_radius(const SheenIrradianceCache *cache, Vec3 p);
 
 /**
  * Weighted mean of the contributors' extrapolations: sum w_i E_i(p, n) / sum w_i with w_i = w - 1/a.

@@ -16,12 +16,13 @@ enum {
     PROBES = 24,    // rays that estimate the radius of a record before it is placed
     FOLLOWED = 12,  // hits of those that are looked at next
     KEPT = 4,       // deep records that a stored hit reads
-    ROUNDS_MAX = 4, // of placing records at hits that no record covers
-    RECORDS_MAX = 1 << 17
+    ROUNDS_MAX = 3, // of placing records at hits that no record covers
+    BUDGET = 2500,  // records of the first round; where it does not suffice all sizes grow
 };
+static const float growth = 1.5f;
 // Sizes in units of the scale: the median distance that light goes between surfaces.
-static const float reach_min = 0.02f, reach_max = 0.25f, cell_min = 0.025f, near_cells = 4.0f;
-static const float cell_per_distance = 0.16f;
+static const float reach_min = 0.03f, reach_max = 0.25f, cell_min = 0.03f, near_cells = 3.5f;
+static const float cell_per_distance = 0.2f;
 
 /** What a stratum of a deep gather saw. */
 typedef struct DeepCell {
@@ -31,7 +32,8 @@ typedef struct DeepCell {
     Rgb direct;     // weight times direct irradiance
     float distance; // INFINITY for the sky
     uint32_t record[KEPT];
-    float share[KEPT]; // of the records' irradiance; sum 1, or all 0 where no record covers the hit
+    float share[KEPT]; // of the records' irradiance; sum 1, or all 0 where no record covers the hit: it then takes the
+                       // gather's own point for a guess
 } DeepCell;
 
 /** The solution of one bounce count at one record. */
@@ -44,10 +46,12 @@ struct SheenDeep {
     const SheenWork *work;
     unsigned bounces;
     float scale;                         // metres
+    float reach_min;                     // metres
     SheenIrradianceCache *cache;         // where the records are; their light is in `light`
     DiffusePoint *points;                // [records]
     DeepCell *cells;                     // [records][strata], freed after the solution
     DeepLight *light[SHEEN_DEEP_LEVELS]; // light[i][record] holds k = bounces - i
+    Rgb mean[SHEEN_DEEP_LEVELS];         // over all records: a guess where there is none
     SheenMemo *memo;
     uint32_t point_capacity, gathered;
 };
@@ -80,7 +84,7 @@ static uint32_t point_key(const SheenDeep *d, uint32_t index, uint32_t use)
 
 static float reach_of(const SheenDeep *d, float R)
 {
-    return clampf(deep_accuracy * R, reach_min * d->scale, reach_max * d->scale);
+    return clampf(deep_accuracy * R, d->reach_min, maxf(reach_max * d->scale, d->reach_min));
 }
 
 static bool store_point(SheenDeep *d, const DiffusePoint *p, float R)
@@ -99,6 +103,11 @@ static bool store_point(SheenDeep *d, const DiffusePoint *p, float R)
     return sheen_irradiance_cache_insert(d->cache, &record) == SHEEN_OK;
 }
 
+static SheenStatus create_cache(SheenDeep *d)
+{
+    return sheen_irradiance_cache_create(deep_accuracy, false, &d->work->scene->bounds, &d->cache);
+}
+
 static bool covered(const SheenDeep *d, Vec3 p, Vec3 n)
 {
     Contributors c;
@@ -106,10 +115,11 @@ static bool covered(const SheenDeep *d, Vec3 p, Vec3 n)
     return c.n > 0;
 }
 
-// Places records for all queued points that are not covered; the first hits of each are queued in turn.
-static SheenStatus place(SheenDeep *d, Queue *q, Hemisphere *probe, SheenStats *stats)
+// Places records, up to `most` in all, for the queued points that are not covered; some hits of each are queued in
+// turn.
+static SheenStatus place(SheenDeep *d, Queue *q, uint32_t most, Hemisphere *probe, SheenStats *stats)
 {
-    while (q->head < q->tail && d->cache->n_records < RECORDS_MAX) {
+    while (q->head < q->tail && d->cache->n_records < most) {
         DiffusePoint p = q->items[q->head++];
         if (covered(d, p.p, p.n)) continue;
         sheen_hemisphere_trace(d->work, &p, point_key(d, d->cache->n_records, 0), 1, probe, stats);
@@ -220,19 +230,38 @@ static SheenStatus gather_new(SheenDeep *d, DeepTask *task)
     return done ? SHEEN_OK : SHEEN_ERR_CANCELLED;
 }
 
-static SheenStatus place_and_gather(SheenDeep *d, Queue *q, DeepTask *task, SheenStats *stats)
+// Places the first records, from the seeds outward. A scene with more small things than the budget allows is covered
+// with larger records: deep light is read through the hundreds of rays of a gather, which need no detail.
+static SheenStatus place_first(SheenDeep *d, const Queue *seeds, Queue *q, Hemisphere *probe, SheenStats *stats)
+{
+    for (;;) {
+        q->head = q->tail = 0;
+        for (size_t i = 0; i < seeds->tail; ++i)
+            if (!queue_push(q, &seeds->items[i])) return SHEEN_ERR_NOMEM;
+        SheenStatus status = place(d, q, BUDGET, probe, stats);
+        if (status != SHEEN_OK || d->cache->n_records < BUDGET) return status;
+        sheen_irradiance_cache_destroy(&d->cache);
+        status = create_cache(d);
+        if (status != SHEEN_OK) return status;
+        d->reach_min *= growth;
+    }
+}
+
+static SheenStatus place_and_gather(SheenDeep *d, const Queue *seeds, DeepTask *task, SheenStats *stats)
 {
     Hemisphere probe = {0};
+    Queue queue = {0};
     if (!sheen_hemisphere_reserve(&probe, sheen_strata_cosine(PROBES))) return SHEEN_ERR_NOMEM;
-    SheenStatus status = SHEEN_OK;
-    for (int round = 0; round < ROUNDS_MAX && status == SHEEN_OK; ++round) {
-        status = place(d, q, &probe, stats);
+    SheenStatus status = place_first(d, seeds, &queue, &probe, stats);
+    for (int round = 0; round < ROUNDS_MAX && status == SHEEN_OK && d->cache->n_records > d->gathered; ++round) {
         uint32_t first = d->gathered;
-        if (status != SHEEN_OK || d->cache->n_records == first) break;
         progress_report(d->work->progress, "deep light", (double)round / ROUNDS_MAX, d->cache->n_records);
         status = gather_new(d, task);
-        if (status == SHEEN_OK && round + 1 < ROUNDS_MAX) status = queue_uncovered(d, first, q);
+        if (status != SHEEN_OK || round + 1 == ROUNDS_MAX) break;
+        status = queue_uncovered(d, first, &queue);
+        if (status == SHEEN_OK) status = place(d, &queue, BUDGET + BUDGET / 2, &probe, stats);
     }
+    free(queue.items);
     sheen_hemisphere_free(&probe);
     return status;
 }
@@ -240,10 +269,10 @@ static SheenStatus place_and_gather(SheenDeep *d, Queue *q, DeepTask *task, Shee
 // ---- solution ---------------------------------------------------------------------------------------------------
 
 // Radiance that a stratum sends after k bounces.
-static Rgb cell_radiance(const DeepCell *c, unsigned k, const Rgb before[])
+static Rgb cell_radiance(const DeepCell *c, unsigned k, const Rgb before[], size_t own)
 {
     if (k == 0) return c->sky;
-    Rgb E = rgb_gray(0.0f);
+    Rgb E = c->share[0] > 0.0f ? rgb_gray(0.0f) : before[own];
     for (int i = 0; i < KEPT && c->share[i] > 0.0f; ++i) E = rgb_mad(E, c->share[i], before[c->record[i]]);
     return rgb_add(c->sky, rgb_add(c->direct, rgb_mul(c->weight, E)));
 }
@@ -262,7 +291,7 @@ static void sweep_task(void *user, size_t item, unsigned worker)
     const DeepCell *cells = cells_of(d, (uint32_t)item);
     Hemisphere *h = &t->scratch[worker];
     for (size_t i = 0; i < h->cells; ++i) {
-        h->L[i] = cell_radiance(&cells[i], t->k, t->before);
+        h->L[i] = cell_radiance(&cells[i], t->k, t->before, item);
         h->distance[i] = cells[i].distance;
     }
     sheen_hemisphere_directions(point_key(d, (uint32_t)item, 1), h);
@@ -293,6 +322,8 @@ static SheenStatus solve(SheenDeep *d, DeepTask *task)
         task->now = E[k & 1];
         if (!sheen_pool_run(d->work->pool, n, sweep_task, task, d->work->cancel)) status = SHEEN_ERR_CANCELLED;
     }
+    for (int i = 0; i < SHEEN_DEEP_LEVELS && status == SHEEN_OK; ++i)
+        for (size_t j = 0; j < n; ++j) d->mean[i] = rgb_mad(d->mean[i], 1.0f / (float)n, d->light[i][j].E);
     free(E[0]);
     free(E[1]);
     return status;
@@ -335,6 +366,7 @@ static SheenStatus queue_seeds(SheenDeep *d, const DiffusePoint seeds[], size_t 
     }
     qsort(lengths, n_lengths, sizeof *lengths, compare_floats);
     d->scale = n_lengths ? lengths[n_lengths / 2] : 1.0f;
+    d->reach_min = reach_min * d->scale;
     free(lengths);
     return SHEEN_OK;
 }
@@ -350,14 +382,14 @@ SheenStatus sheen_deep_create(const SheenWork *work, const DiffusePoint seeds[],
     unsigned workers = sheen_pool_size(work->pool);
     DeepTask task = {
         .deep = d, .scratch = calloc(workers, sizeof(Hemisphere)), .stats = calloc(workers, sizeof(SheenStats))};
-    Queue queue = {0};
-    SheenStatus status = sheen_irradiance_cache_create(deep_accuracy, false, &work->scene->bounds, &d->cache);
+    Queue seed_hits = {0};
+    SheenStatus status = create_cache(d);
     if (status == SHEEN_OK) status = sheen_memo_create(&d->memo);
     if (!task.scratch || !task.stats) status = SHEEN_ERR_NOMEM;
     for (unsigned i = 0; i < workers && status == SHEEN_OK; ++i)
         if (!sheen_hemisphere_reserve(&task.scratch[i], deep_strata)) status = SHEEN_ERR_NOMEM;
-    if (status == SHEEN_OK) status = queue_seeds(d, seeds, n, &queue, stats);
-    if (status == SHEEN_OK) status = place_and_gather(d, &queue, &task, stats);
+    if (status == SHEEN_OK) status = queue_seeds(d, seeds, n, &seed_hits, stats);
+    if (status == SHEEN_OK) status = place_and_gather(d, &seed_hits, &task, stats);
     if (status == SHEEN_OK) status = solve(d, &task);
     for (unsigned i = 0; i < workers; ++i) {
         if (task.stats) sheen_stats_add(stats, &task.stats[i]);
@@ -365,7 +397,7 @@ SheenStatus sheen_deep_create(const SheenWork *work, const DiffusePoint seeds[],
     }
     free(task.scratch);
     free(task.stats);
-    free(queue.items);
+    free(seed_hits.items);
     free(d->cells);
     d->cells = NULL;
     if (status != SHEEN_OK) sheen_deep_destroy(&d);
@@ -428,7 +460,7 @@ Rgb sheen_deep_answer(const SheenDeep *d, const DeepQuery *query)
         if (!interpolate(d, query->cell.center, query->cell.n, query->cell.depth, query->level, &E)) E = uncovered;
         sheen_memo_put(d->memo, query->cell.key, E);
     }
-    if (E.r < 0.0f) interpolate(d, query->p, query->n, 0.0f, query->level, &E);
+    if (E.r < 0.0f && !interpolate(d, query->p, query->n, 0.0f, query->level, &E)) E = d->mean[query->level];
     return E;
 }
 

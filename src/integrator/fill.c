@@ -169,8 +169,10 @@ static void cover_task(void *user, size_t item, unsigned worker)
         Contributors c;
         sheen_irradiance_cache_find(w->fill->cache, p->point.p, p->point.n, 0.0f, &c);
         w->covered[i] = c.n > 0 || w->made_at[w->open[i]];
+        if (w->covered[i]) continue;
         float most = reach_max_px * p->footprint;
-        w->spacing[i] = isinf(c.radius) ? 0.5f * most : clampf(a * c.radius, reach_min_px * p->footprint, most);
+        float radius = sheen_irradiance_cache_expect_radius(w->fill->cache, p->point.p);
+        w->spacing[i] = isinf(radius) ? 0.5f * most : clampf(a * radius, reach_min_px * p->footprint, most);
     }
 }
 

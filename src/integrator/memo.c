@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SLOTS = 1 << 18, NORMAL_STEPS = 12 };
+enum { SLOTS = 1 << 20, PROBES_MAX = 16, NORMAL_STEPS = 12 };
 
 typedef struct Slot {
     atomic_uint_least64_t key; // 0 is free
@@ -17,7 +17,6 @@ typedef struct Slot {
 
 struct SheenMemo {
     Slot *slots;
-    atomic_uint_least32_t used;
 };
 
 SheenStatus sheen_memo_create(SheenMemo **out)
@@ -99,8 +98,8 @@ void sheen_memo_prefetch(const SheenMemo *memo, uint64_t key)
 
 bool sheen_memo_get(const SheenMemo *memo, uint64_t key, Rgb *value)
 {
-    for (size_t i = key & (SLOTS - 1);; i = (i + 1) & (SLOTS - 1)) {
-        Slot *slot = &memo->slots[i];
+    for (size_t probe = 0; probe < PROBES_MAX; ++probe) {
+        Slot *slot = &memo->slots[(key + probe) & (SLOTS - 1)];
         uint64_t k = atomic_load_explicit(&slot->key, memory_order_relaxed);
         if (k == 0) return false;
         if (k != key) continue;
@@ -108,13 +107,13 @@ bool sheen_memo_get(const SheenMemo *memo, uint64_t key, Rgb *value)
         *value = slot->value;
         return true;
     }
+    return false;
 }
 
 void sheen_memo_put(SheenMemo *memo, uint64_t key, Rgb value)
 {
-    if (atomic_load_explicit(&memo->used, memory_order_relaxed) > SLOTS / 4 * 3) return;
-    for (size_t i = key & (SLOTS - 1);; i = (i + 1) & (SLOTS - 1)) {
-        Slot *slot = &memo->slots[i];
+    for (size_t probe = 0; probe < PROBES_MAX; ++probe) {
+        Slot *slot = &memo->slots[(key + probe) & (SLOTS - 1)];
         uint64_t k = 0;
         if (!atomic_compare_exchange_strong_explicit(&slot->key, &k, key, memory_order_relaxed, memory_order_relaxed)) {
             if (k == key) return; // somebody else writes the same value
@@ -122,7 +121,6 @@ void sheen_memo_put(SheenMemo *memo, uint64_t key, Rgb value)
         }
         slot->value = value;
         atomic_store_explicit(&slot->ready, true, memory_order_release);
-        atomic_fetch_add_explicit(&memo->used, 1, memory_order_relaxed);
         return;
     }
 }

@@ -37,7 +37,7 @@ bool sheen_memo_get(const SheenMemo *memo, uint64_t key, Rgb *value);
 void sheen_memo_prefetch(const SheenMemo *memo, uint64_t key);
 
 /**
- * Remembers a value; drops it when the table is three quarters full. All callers must put the same value for a key:
+ * Remembers a value; drops it where the table is crowded. All callers must put the same value for a key:
  * then nothing depends on who was first. Thread-safe.
  */
 void sheen_memo_put(SheenMemo *memo, uint64_t key, Rgb value);
