@@ -101,8 +101,7 @@ static bool direct_light(const SheenWork *work, Shader *s, SheenFilm *film)
         for (size_t i = 0; i < n; ++i) {
             uint32_t x = points[i].pixel % work->width, y = points[i].pixel / work->width;
             uint32_t key = hash_combine(work->options.seed ^ KEY_LIGHT, points[i].branch);
-            uint32_t index =
-                sheen_sample_index(x, y, work->options.spp * per_point, points[i].sample * per_point + j);
+            uint32_t index = sheen_sample_index(x, y, work->options.spp * per_point, points[i].sample * per_point + j);
             SheenSampler sampler = sampler_make(key, index);
             s->numbers[i].choice = hash_to_unit(key + index * 0x9e3779b9u); // steps of the golden ratio
             s->numbers[i].place = sampler_2d(&sampler);

@@ -68,9 +68,9 @@ typedef struct SheenEye {
 } SheenEye;
 
 /**
- * Number of sample s of a pixel in a sequence over the whole picture: pixels follow each other along a Z-order curve, so
- * that the samples of each aligned square of pixels are stratified together and neighbors' errors cancel.
- * Source: ahmed2020-z-sampler.
+ * Number of sample s of a pixel in a sequence over the whole picture: pixels follow each other along a Z-order curve,
+ * so that the samples of each aligned square of pixels are stratified together and neighbors' errors cancel. Source:
+ * ahmed2020-z-sampler.
  */
 uint32_t sheen_sample_index(uint32_t x, uint32_t y, uint32_t per_pixel, uint32_t s);
 

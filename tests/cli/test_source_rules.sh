@@ -1,5 +1,5 @@
 #!/bin/bash
-# The tree's own rules: layers, unique names, no printing, no globals; every cited source is in docs/refs.bib.
+# The tree's own rules: layers, unique names, no printing, no globals; every cited source is in docs/refs.bib; layout.
 . "$(dirname "$0")/check.sh"
 
 if ! command -v python3 >/dev/null; then
@@ -10,6 +10,13 @@ for tool in check_layers check_refs; do
     python3 "$SOURCE/tools/$tool.py" || fail "tools/$tool.py"
     n_checks=$((n_checks + 1))
 done
+
+# The layout is that of the clang-format of Debian 12; others differ in detail.
+if clang-format --version 2>/dev/null | grep -q 'version 14\.'; then
+    find "$SOURCE"/{src,apps,tests,fuzz,bench} -name '*.[ch]' -print0 |
+        xargs -0 clang-format --dry-run -Werror 2>err || fail "a file is not as clang-format makes it"
+    n_checks=$((n_checks + 1))
+fi
 
 # The checks must be able to fail: a tree that breaks each rule once.
 mkdir -p src/base src/math docs
