@@ -153,8 +153,8 @@ static inline uint32_t kit_smooth_sphere(SheenBuilder *b, Vec3 center, float rad
     return sheen_builder_add_shape(b, &s);
 }
 
-/** The box [-s, s]^3 with a lamp under its ceiling, a ball and a block; the camera stands inside. */
-static inline SheenBuilder *kit_room(float s, float albedo, SheenMaterialKind ball)
+/** The box [-s, s]^3 with a ball and a slanted board, seen from inside; `lit` by a lamp under its ceiling. */
+static inline SheenBuilder *kit_room(float s, float albedo, SheenMaterialKind ball, bool lit)
 {
     SheenBuilder *b = kit_begin();
     uint32_t walls = kit_diffuse(b, albedo);
@@ -165,9 +165,11 @@ static inline SheenBuilder *kit_room(float s, float albedo, SheenMaterialKind ba
         kit_quad(b, corner, e1, e2, walls);
         kit_quad(b, v3_mad(corner, s, axis[a]), e2, e1, walls);
     }
-    uint32_t lamp = kit_quad(b, v3_scale(v3(-0.4f, -0.4f, 0.98f), s), v3_scale(v3(0, 0.8f, 0), s),
-                             v3_scale(v3(0.8f, 0, 0), s), kit_diffuse(b, 0.0f));
-    sheen_builder_add_area_light(b, lamp, rgb(4.0f, 5.0f, 3.0f));
+    if (lit) {
+        uint32_t lamp = kit_quad(b, v3_scale(v3(-0.4f, -0.4f, 0.98f), s), v3_scale(v3(0, 0.8f, 0), s),
+                                 v3_scale(v3(0.8f, 0, 0), s), kit_diffuse(b, 0.0f));
+        sheen_builder_add_area_light(b, lamp, rgb(4.0f, 5.0f, 3.0f));
+    }
     kit_sphere(b, v3_scale(v3(-0.4f, 0.4f, -0.55f), s), 0.4f * s, false, kit_material(b, ball, 0.5f, 1.5f));
     kit_quad(b, v3_scale(v3(0.1f, 0.0f, -0.4f), s), v3_scale(v3(0.6f, 0, 0), s), v3_scale(v3(0, 0.6f, 0.2f), s),
              kit_material(b, SHEEN_MATERIAL_DIFFUSE, 0.3f, 1.0f));
