@@ -105,7 +105,7 @@ const Option render_options[] = {
      .name = "light-samples",
      .argument = "N",
      .meaning = "Light samples for each shading point.",
-     .standard = "1",
+     .standard = "one for each light of the scene, up to 4; 1 with --integrator path",
      .example = "--light-samples 4",
      .recorded = true,
      RANGE(1, 4096),

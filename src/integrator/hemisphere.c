@@ -14,6 +14,7 @@ void sheen_hemisphere_free(Hemisphere *h)
     free(h->directions);
     free(h->L);
     free(h->caustic);
+    free(h->specular);
     free(h->distance);
     free(h->vertices);
     free(h->moved);
@@ -34,6 +35,7 @@ bool sheen_hemisphere_reserve(Hemisphere *h, SheenStrata strata)
         h->directions = malloc(n * sizeof *h->directions);
         h->L = malloc(n * sizeof *h->L);
         h->caustic = malloc(n * sizeof *h->caustic);
+        h->specular = malloc(n);
         h->distance = malloc(n * sizeof *h->distance);
         h->vertices = malloc(n * sizeof *h->vertices);
         h->moved = malloc(n * sizeof *h->moved);
@@ -42,8 +44,9 @@ bool sheen_hemisphere_reserve(Hemisphere *h, SheenStrata strata)
         h->points = malloc(n * sizeof *h->points);
         h->numbers = malloc(n * sizeof *h->numbers);
         h->irradiance = malloc(n * sizeof *h->irradiance);
-        if (!h->directions || !h->L || !h->caustic || !h->distance || !h->vertices || !h->moved || !h->rays ||
-            !h->hits || !h->points || !h->numbers || !h->irradiance || !sheen_direct_reserve(&h->direct, n)) {
+        if (!h->directions || !h->L || !h->caustic || !h->specular || !h->distance || !h->vertices || !h->moved ||
+            !h->rays || !h->hits || !h->points || !h->numbers || !h->irradiance ||
+            !sheen_direct_reserve(&h->direct, n)) {
             sheen_hemisphere_free(h);
             return false;
         }
@@ -70,6 +73,7 @@ static void receive(const SheenWork *work, const Followed *f, Rgb weight, uint32
     if (f->escaped)
         h->L[cell] = rgb_add(h->L[cell], rgb_mul(through, sheen_environment_soft(work->lights, f->direction)));
     if (f->specular > 0) {
+        h->specular[cell] = 1;
         Rgb hard = f->emitted;
         if (f->escaped)
             hard = rgb_sub(sheen_environment(work->scene, f->direction),
@@ -105,6 +109,7 @@ void sheen_hemisphere_trace(const SheenWork *work, const DiffusePoint *point, ui
     stats->rays_gather += h->cells;
     for (uint32_t i = 0; i < h->cells; ++i) {
         h->L[i] = h->caustic[i] = rgb_gray(0.0f);
+        h->specular[i] = 0;
         SheenSampler sampler = sampler_make(specular_key, i);
         Followed f;
         sheen_follow(work, &h->rays[i], &h->hits[i], &sampler, &stats->rays_specular, &f);
@@ -172,9 +177,13 @@ void sheen_hemisphere_direct(const SheenWork *work, size_t first, uint32_t sampl
 
 void sheen_hemisphere_add_caustics(Hemisphere *h)
 {
-    const float largest_share = 1.0f / 16.0f;
+    const float largest_share = 1.0f / 512.0f;
     double rest = 0.0, most = 0.0;
     for (size_t i = 0; i < h->cells; ++i) {
+        if (h->specular[i]) {
+            h->caustic[i] = rgb_add(h->caustic[i], h->L[i]);
+            h->L[i] = rgb_gray(0.0f);
+        }
         rest += (double)rgb_max(h->L[i]);
         most = fmax(most, (double)rgb_max(h->caustic[i]));
     }

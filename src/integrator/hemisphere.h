@@ -18,12 +18,13 @@ typedef struct GatherVertex {
 /** Buffers of one worker, and the gather that they hold. */
 typedef struct Hemisphere {
     SheenStrata strata;
-    Frame frame;      // the local frame of `directions`
-    uint32_t key;     // of all random numbers of this gather
-    Vec3 *directions; // [cells] local
-    Rgb *L;           // [cells] radiance so far
-    Rgb *caustic;     // [cells] radiance of emitters seen through mirrors and glass
-    float *distance;  // [cells] to what sends it; INFINITY for the sky
+    Frame frame;             // the local frame of `directions`
+    uint32_t key;            // of all random numbers of this gather
+    Vec3 *directions;        // [cells] local
+    Rgb *L;                  // [cells] radiance so far
+    Rgb *caustic;            // [cells] radiance of emitters seen through mirrors and glass
+    unsigned char *specular; // [cells] 1 where a mirror or glass lay on the way
+    float *distance;         // [cells] to what sends it; INFINITY for the sky
     GatherVertex *vertices;
     size_t n_vertices;
     // scratch
@@ -64,8 +65,9 @@ size_t sheen_hemisphere_extend(const SheenWork *work, float near, Hemisphere *h,
 void sheen_hemisphere_direct(const SheenWork *work, size_t first, uint32_t samples, Hemisphere *h, SheenStats *stats);
 
 /**
- * Adds the caustics to L, each cell's cut so that it is at most 1/16 of the whole: an emitter that a single ray finds
- * through glass is noise that a cache would spread over a wide splotch. Energy that is cut is lost.
+ * Adds the caustics to L. What a cell has received through mirrors and glass is cut so that it is at most 1/512 of the
+ * whole, twice the mean of a thousand cells: a lamp that a single ray finds in a mirror is noise that a cache would
+ * spread over a wide splotch. Energy that is cut is lost: the light of lamps inside glass is too weak.
  */
 void sheen_hemisphere_add_caustics(Hemisphere *h);
 

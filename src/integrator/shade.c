@@ -96,7 +96,8 @@ static bool direct_light(const SheenWork *work, Shader *s, SheenFilm *film)
         s->points[i] = points[i].point;
         s->irradiance[i] = rgb_gray(0.0f);
     }
-    uint32_t per_point = work->options.light_samples;
+    uint32_t lights = sheen_lights_count(work->lights);
+    uint32_t per_point = work->options.light_samples ? work->options.light_samples : lights < 4 ? lights : 4;
     for (uint32_t j = 0; j < per_point; ++j) {
         for (size_t i = 0; i < n; ++i) {
             uint32_t x = points[i].pixel % work->width, y = points[i].pixel / work->width;

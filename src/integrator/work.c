@@ -5,7 +5,6 @@ SheenOptions sheen_options_default(void)
 {
     return (SheenOptions){
         .spp = 16,
-        .light_samples = 1,
         .bounces = 8,
         .accuracy = 0.15f,
         .gather_rays = 1024,
