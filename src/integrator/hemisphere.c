@@ -15,6 +15,7 @@ void sheen_hemisphere_free(Hemisphere *h)
     free(h->L);
     free(h->caustic);
     free(h->specular);
+    free(h->mirrored);
     free(h->distance);
     free(h->vertices);
     free(h->moved);
@@ -36,6 +37,7 @@ bool sheen_hemisphere_reserve(Hemisphere *h, SheenStrata strata)
         h->L = malloc(n * sizeof *h->L);
         h->caustic = malloc(n * sizeof *h->caustic);
         h->specular = malloc(n);
+        h->mirrored = malloc(n * sizeof *h->mirrored);
         h->distance = malloc(n * sizeof *h->distance);
         h->vertices = malloc(n * sizeof *h->vertices);
         h->moved = malloc(n * sizeof *h->moved);
@@ -44,8 +46,8 @@ bool sheen_hemisphere_reserve(Hemisphere *h, SheenStrata strata)
         h->points = malloc(n * sizeof *h->points);
         h->numbers = malloc(n * sizeof *h->numbers);
         h->irradiance = malloc(n * sizeof *h->irradiance);
-        if (!h->directions || !h->L || !h->caustic || !h->specular || !h->distance || !h->vertices || !h->moved ||
-            !h->rays || !h->hits || !h->points || !h->numbers || !h->irradiance ||
+        if (!h->directions || !h->L || !h->caustic || !h->specular || !h->mirrored || !h->distance || !h->vertices ||
+            !h->moved || !h->rays || !h->hits || !h->points || !h->numbers || !h->irradiance ||
             !sheen_direct_reserve(&h->direct, n)) {
             sheen_hemisphere_free(h);
             return false;
@@ -175,28 +177,34 @@ void sheen_hemisphere_direct(const SheenWork *work, size_t first, uint32_t sampl
     for (size_t i = 0; i < n; ++i) h->L[v[i].cell] = rgb_add(h->L[v[i].cell], rgb_mul(v[i].weight, h->irradiance[i]));
 }
 
-void sheen_hemisphere_add_caustics(Hemisphere *h)
+// Adds values to L, each cut to at most `share` of the whole.
+static void add_cut(Hemisphere *h, const Rgb values[], double share)
 {
-    const float largest_share = 1.0f / 512.0f;
-    double rest = 0.0, most = 0.0;
+    double rest = 0.0, cut = 0.0;
     for (size_t i = 0; i < h->cells; ++i) {
-        if (h->specular[i]) {
-            h->caustic[i] = rgb_add(h->caustic[i], h->L[i]);
-            h->L[i] = rgb_gray(0.0f);
-        }
         rest += (double)rgb_max(h->L[i]);
-        most = fmax(most, (double)rgb_max(h->caustic[i]));
+        cut = fmax(cut, (double)rgb_max(values[i]));
     }
-    if (!(most > 0.0)) return;
-    // The cut c solves c = share (rest + sum min(caustic, c)); the iteration falls toward it from above.
-    double cut = most;
+    if (!(cut > 0.0)) return;
+    // The cut c solves c = share (rest + sum min(value, c)); the iteration falls toward it from above.
     for (int step = 0; step < 16; ++step) {
         double sum = rest;
-        for (size_t i = 0; i < h->cells; ++i) sum += fmin((double)rgb_max(h->caustic[i]), cut);
-        cut = fmin(cut, (double)largest_share * sum);
+        for (size_t i = 0; i < h->cells; ++i) sum += fmin((double)rgb_max(values[i]), cut);
+        cut = fmin(cut, share * sum);
     }
     for (size_t i = 0; i < h->cells; ++i) {
-        float m = rgb_max(h->caustic[i]);
-        if (m > 0.0f) h->L[i] = rgb_mad(h->L[i], m > (float)cut ? (float)cut / m : 1.0f, h->caustic[i]);
+        float m = rgb_max(values[i]);
+        if (m > 0.0f) h->L[i] = rgb_mad(h->L[i], m > (float)cut ? (float)cut / m : 1.0f, values[i]);
     }
+}
+
+void sheen_hemisphere_add_caustics(Hemisphere *h)
+{
+    const double mirrored_most = 8.0, caustic_most = 2.0; // times the mean
+    for (size_t i = 0; i < h->cells; ++i) {
+        h->mirrored[i] = h->specular[i] ? h->L[i] : rgb_gray(0.0f);
+        if (h->specular[i]) h->L[i] = rgb_gray(0.0f);
+    }
+    add_cut(h, h->mirrored, mirrored_most / (double)h->cells);
+    add_cut(h, h->caustic, caustic_most / (double)h->cells);
 }

@@ -28,6 +28,7 @@ typedef struct Hemisphere {
     GatherVertex *vertices;
     size_t n_vertices;
     // scratch
+    Rgb *mirrored; // [cells]
     GatherVertex *moved;
     Ray *rays;
     Hit *hits;
@@ -65,8 +66,8 @@ size_t sheen_hemisphere_extend(const SheenWork *work, float near, Hemisphere *h,
 void sheen_hemisphere_direct(const SheenWork *work, size_t first, uint32_t samples, Hemisphere *h, SheenStats *stats);
 
 /**
- * Adds the caustics to L. What a cell has received through mirrors and glass is cut so that it is at most 1/512 of the
- * whole, twice the mean of a thousand cells: a lamp that a single ray finds in a mirror is noise that a cache would
+ * Ends a gather: adds the caustics to L. Lamps seen through mirrors and glass are cut to twice the mean of the cells,
+ * and other light that came through them to 8 times the mean: what a single ray finds there is noise that a cache would
  * spread over a wide splotch. Energy that is cut is lost: the light of lamps inside glass is too weak.
  */
 void sheen_hemisphere_add_caustics(Hemisphere *h);
