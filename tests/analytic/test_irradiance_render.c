@@ -41,8 +41,10 @@ static void test_same_picture_at_any_number_of_threads(void **state)
         uint32_t bounces;
         SheenSecondary secondary;
         bool clamping;
-    } cases[] = {{0, SHEEN_SECONDARY_CACHE, false}, {1, SHEEN_SECONDARY_CACHE, true}, {8, SHEEN_SECONDARY_CACHE, false},
-                 {8, SHEEN_SECONDARY_CACHE, true},  {1, SHEEN_SECONDARY_PATH, true},  {8, SHEEN_SECONDARY_PATH, false}};
+    } cases[] = {{0, SHEEN_SECONDARY_CACHE, false},
+                 {1, SHEEN_SECONDARY_CACHE, true},
+                 {8, SHEEN_SECONDARY_CACHE, false},
+                 {8, SHEEN_SECONDARY_PATH, true}};
     static const unsigned threads[] = {1, 2, 7};
     enum { CASES = sizeof cases / sizeof *cases };
     SheenFilm *first[CASES] = {0};
@@ -117,7 +119,8 @@ static void test_cancel(void **state)
     Stage stage =
         stage_end(full_room(), 1); // the thread that reports is the one that works: tiles are left when it does
     SheenRenderSettings s = small_settings(3);
-    s.width = s.height = 96;
+    s.width = s.height = 64;
+    s.options.gather_rays = 64;
     s.options.spp = 1;
     for (int i = 0; i < 6; ++i) {
         Watch w = {.stage = stages[i]};
@@ -191,13 +194,13 @@ static void test_tiny_pictures(void **state)
 static void test_scale_does_not_show(void **state)
 {
     (void)state;
-    static const float scales[4] = {1024.0f, 1e3f, 0.1f, 1e-3f};
-    static const double mean_bound[4] = {0.001, 0.002, 0.002, 0.01}, block_bound[4] = {0.01, 0.01, 0.01, 0.03};
+    static const float scales[3] = {1024.0f, 1e3f, 1e-3f};
+    static const double mean_bound[3] = {0.001, 0.002, 0.01}, block_bound[3] = {0.01, 0.01, 0.03};
     Stage stage = stage_end(kit_room(1.0f, 0.7f, SHEEN_MATERIAL_DIFFUSE, true), 2);
     SheenRenderSettings s = small_settings(3);
     SheenStats stats, scaled_stats;
     SheenFilm *film = stage_render(&stage, &s, &stats);
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < 3; ++i) {
         Stage other = stage_end(kit_room(scales[i], 0.7f, SHEEN_MATERIAL_DIFFUSE, true), 2);
         SheenFilm *scaled = stage_render(&other, &s, &scaled_stats);
         double off = film_mean(scaled) / film_mean(film) - 1.0;
