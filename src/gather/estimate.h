@@ -4,6 +4,7 @@
 #define SHEEN_GATHER_ESTIMATE_H
 
 #include "gather/strata.h"
+#include "math/frame.h"
 
 /** What one gather says about its point, in the local frame (x, y in the surface, z along the normal). */
 typedef struct IrradianceEstimate {
@@ -30,6 +31,14 @@ typedef struct IrradianceEstimate {
  */
 void sheen_estimate_irradiance(SheenStrata s, const Vec3 directions[], const Rgb L[], const float distance[],
                                IrradianceEstimate *out);
+
+/** A gradient (d/dx, d/dy in the local frame) as one world-space vector for each colour channel. */
+static inline void estimate_world_gradient(const Frame *f, const Rgb local[2], Vec3 out[3])
+{
+    out[0] = v3_mad(v3_scale(f->t, local[0].r), local[1].r, f->b);
+    out[1] = v3_mad(v3_scale(f->t, local[0].g), local[1].g, f->b);
+    out[2] = v3_mad(v3_scale(f->t, local[0].b), local[1].b, f->b);
+}
 
 /** Harmonic mean n / sum(1 / d); distances of INFINITY are zero terms. INFINITY when all are. */
 float sheen_harmonic_mean(unsigned n, const float distance[]);

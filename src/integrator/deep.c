@@ -277,13 +277,6 @@ static Rgb cell_radiance(const DeepCell *c, unsigned k, const Rgb before[], size
     return rgb_add(c->sky, rgb_add(c->direct, rgb_mul(c->weight, E)));
 }
 
-static void world_gradient(const Frame *f, const Rgb local[2], Vec3 out[3])
-{
-    out[0] = v3_mad(v3_scale(f->t, local[0].r), local[1].r, f->b);
-    out[1] = v3_mad(v3_scale(f->t, local[0].g), local[1].g, f->b);
-    out[2] = v3_mad(v3_scale(f->t, local[0].b), local[1].b, f->b);
-}
-
 static void sweep_task(void *user, size_t item, unsigned worker)
 {
     DeepTask *t = user;
@@ -303,8 +296,8 @@ static void sweep_task(void *user, size_t item, unsigned worker)
     DeepLight *light = &d->light[level][item];
     Frame frame = frame_from_normal(d->points[item].n);
     light->E = e.E;
-    world_gradient(&frame, e.translation, light->translation);
-    world_gradient(&frame, e.rotation, light->rotation);
+    estimate_world_gradient(&frame, e.translation, light->translation);
+    estimate_world_gradient(&frame, e.rotation, light->rotation);
 }
 
 static SheenStatus solve(SheenDeep *d, DeepTask *task)

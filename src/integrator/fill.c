@@ -97,13 +97,6 @@ static void gather_light(const SheenFill *f, const DiffusePoint *p, uint32_t key
     sheen_hemisphere_add_caustics(h);
 }
 
-static void world_gradient(const Frame *f, const Rgb local[2], Vec3 out[3])
-{
-    out[0] = v3_mad(v3_scale(f->t, local[0].r), local[1].r, f->b);
-    out[1] = v3_mad(v3_scale(f->t, local[0].g), local[1].g, f->b);
-    out[2] = v3_mad(v3_scale(f->t, local[0].b), local[1].b, f->b);
-}
-
 // Radius from the estimate: harmonic mean, bounded by the gradient, then by the pixel. Source:
 // krivanek2006-making-caching-practical eq. (2), on luminance, for the second.
 static void set_radius(const SheenOptions *o, const IrradianceEstimate *e, float footprint, IrradianceRecord *r)
@@ -135,8 +128,8 @@ static void make_record(const SheenFill *f, const ShadingPoint *p, uint32_t key,
     sheen_estimate_irradiance(h->strata, h->directions, h->L, h->distance, &e);
     *r = (IrradianceRecord){.p = p->point.p, .n = p->point.n, .E = e.E};
     if (f->work->options.gradients == SHEEN_GRADIENTS_STRATIFIED) {
-        world_gradient(&h->frame, e.translation, r->translation);
-        world_gradient(&h->frame, e.rotation, r->rotation);
+        estimate_world_gradient(&h->frame, e.translation, r->translation);
+        estimate_world_gradient(&h->frame, e.rotation, r->rotation);
     }
     set_radius(&f->work->options, &e, p->footprint, r);
 }
@@ -146,7 +139,8 @@ static void make_record(const SheenFill *f, const ShadingPoint *p, uint32_t key,
 /** State of the waves over one set of points. */
 typedef struct Waves {
     SheenFill *fill;
-    const ShadingPoint *points;
+    const ShadingPoint *points; // [n]
+    size_t n;
     uint32_t *open; // points without a record, coarse to fine
     size_t n_open;
     unsigned char *covered; // [n_open]
@@ -182,7 +176,11 @@ static void gather_task(void *user, size_t item, unsigned worker)
     const SheenFill *f = w->fill;
     uint32_t key = hash_combine(f->work->options.seed ^ 0x9a7eu, w->made + (uint32_t)item);
     make_record(f, &w->points[w->accepted[item]], key, &f->scratch[worker], &f->stats[worker], &w->records[item]);
-    if (worker == 0) progress_report(f->work->progress, "fill", -1.0, w->made + item);
+    if (worker == 0) {
+        // Most of the points that a wave finds open it covers.
+        double before = 1.0 - (double)w->n_open / (double)w->n, wave = (double)item / (double)w->n_accepted;
+        progress_report(f->work->progress, "fill", before + 0.7 * (1.0 - before) * wave, w->made + item);
+    }
 }
 
 // Pixels whose coordinates are multiples of 64 come first, then of 32, and so on: each level doubles the density.
@@ -243,7 +241,7 @@ SheenStatus sheen_fill_run(SheenFill *f, const ShadingPoint points[], size_t n, 
 {
     if (n == 0) return SHEEN_OK;
     if (n > UINT32_MAX) return SHEEN_ERR_NOMEM;
-    Waves w = {.fill = f, .points = points, .made = f->cache->n_records};
+    Waves w = {.fill = f, .points = points, .n = n, .made = f->cache->n_records};
     w.open = malloc(n * sizeof *w.open);
     w.covered = malloc(n);
     w.made_at = calloc(n, 1);
