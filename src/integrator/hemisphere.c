@@ -16,6 +16,7 @@ void sheen_hemisphere_free(Hemisphere *h)
     free(h->caustic);
     free(h->specular);
     free(h->mirrored);
+    free(h->sorted);
     free(h->distance);
     free(h->vertices);
     free(h->moved);
@@ -38,6 +39,7 @@ bool sheen_hemisphere_reserve(Hemisphere *h, SheenStrata strata)
         h->caustic = malloc(n * sizeof *h->caustic);
         h->specular = malloc(n);
         h->mirrored = malloc(n * sizeof *h->mirrored);
+        h->sorted = malloc(n * sizeof *h->sorted);
         h->distance = malloc(n * sizeof *h->distance);
         h->vertices = malloc(n * sizeof *h->vertices);
         h->moved = malloc(n * sizeof *h->moved);
@@ -46,8 +48,8 @@ bool sheen_hemisphere_reserve(Hemisphere *h, SheenStrata strata)
         h->points = malloc(n * sizeof *h->points);
         h->numbers = malloc(n * sizeof *h->numbers);
         h->irradiance = malloc(n * sizeof *h->irradiance);
-        if (!h->directions || !h->L || !h->caustic || !h->specular || !h->mirrored || !h->distance || !h->vertices ||
-            !h->moved || !h->rays || !h->hits || !h->points || !h->numbers || !h->irradiance ||
+        if (!h->directions || !h->L || !h->caustic || !h->specular || !h->mirrored || !h->sorted || !h->distance ||
+            !h->vertices || !h->moved || !h->rays || !h->hits || !h->points || !h->numbers || !h->irradiance ||
             !sheen_direct_reserve(&h->direct, n)) {
             sheen_hemisphere_free(h);
             return false;
@@ -75,7 +77,7 @@ static void receive(const SheenWork *work, const Followed *f, Rgb weight, uint32
     if (f->escaped)
         h->L[cell] = rgb_add(h->L[cell], rgb_mul(through, sheen_environment_soft(work->lights, f->direction)));
     if (f->specular > 0) {
-        h->specular[cell] = 1;
+        if (f->scatters) h->specular[cell] = 1; // the soft sky behind a pane is as good as without it
         Rgb hard = f->emitted;
         if (f->escaped)
             hard = rgb_sub(sheen_environment(work->scene, f->direction),
@@ -177,7 +179,22 @@ void sheen_hemisphere_direct(const SheenWork *work, size_t first, uint32_t sampl
     for (size_t i = 0; i < n; ++i) h->L[v[i].cell] = rgb_add(h->L[v[i].cell], rgb_mul(v[i].weight, h->irradiance[i]));
 }
 
-// Adds values to L, each cut to at most `share` of the whole.
+static int compare_descending(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x < y) - (x > y);
+}
+
+// The value of rank `rank` from the largest, rank 0.
+static float ranked(Hemisphere *h, const Rgb values[], size_t rank)
+{
+    for (size_t i = 0; i < h->cells; ++i) h->sorted[i] = rgb_max(values[i]);
+    qsort(h->sorted, h->cells, sizeof *h->sorted, compare_descending);
+    return h->sorted[rank];
+}
+
+// Adds values to L, each cut to at most `share` of the whole; but never below what one cell in 64 sees, which is light
+// and not noise: a room may have no other.
 static void add_cut(Hemisphere *h, const Rgb values[], double share)
 {
     double rest = 0.0, cut = 0.0;
@@ -192,9 +209,10 @@ static void add_cut(Hemisphere *h, const Rgb values[], double share)
         for (size_t i = 0; i < h->cells; ++i) sum += fmin((double)rgb_max(values[i]), cut);
         cut = fmin(cut, share * sum);
     }
+    float most = maxf((float)cut, ranked(h, values, h->cells / 64));
     for (size_t i = 0; i < h->cells; ++i) {
         float m = rgb_max(values[i]);
-        if (m > 0.0f) h->L[i] = rgb_mad(h->L[i], m > (float)cut ? (float)cut / m : 1.0f, values[i]);
+        if (m > 0.0f) h->L[i] = rgb_mad(h->L[i], m > most ? most / m : 1.0f, values[i]);
     }
 }
 

@@ -29,6 +29,7 @@ typedef struct Hemisphere {
     size_t n_vertices;
     // scratch
     Rgb *mirrored; // [cells]
+    float *sorted; // [cells]
     GatherVertex *moved;
     Ray *rays;
     Hit *hits;
@@ -67,8 +68,9 @@ void sheen_hemisphere_direct(const SheenWork *work, size_t first, uint32_t sampl
 
 /**
  * Ends a gather: adds the caustics to L. Lamps seen through mirrors and glass are cut to twice the mean of the cells,
- * and other light that came through them to 8 times the mean: what a single ray finds there is noise that a cache would
- * spread over a wide splotch. Energy that is cut is lost: the light of lamps inside glass is too weak.
+ * and surfaces seen so to 8 times the mean: what a single ray finds there is noise that a cache would spread over a
+ * wide splotch. What one cell in 64 sees is not cut, nor the soft sky. Energy that is cut is lost: small lamps inside
+ * glass are too weak.
  */
 void sheen_hemisphere_add_caustics(Hemisphere *h);
 

@@ -208,6 +208,44 @@ static void test_pane_of_air(void **state)
     sheen_film_destroy(&film[1]);
 }
 
+// The sky through a small skylight lights a closed room; a pane of the index of air in it is not there. It is a mirror
+// or glass to each gather, but what comes through it is soft and must not be cut as a lamp's caustic is.
+static void test_sky_through_a_pane(void **state)
+{
+    (void)state;
+    SheenFilm *film[2];
+    for (int pane = 0; pane < 2; ++pane) {
+        SheenBuilder *b = kit_begin();
+        uint32_t white = kit_diffuse(b, 0.6f);
+        kit_quad(b, v3(-1, -1, -1), v3(2, 0, 0), v3(0, 2, 0), white);
+        kit_quad(b, v3(-1, -1, -1), v3(0, 2, 0), v3(0, 0, 2), white);
+        kit_quad(b, v3(1, -1, -1), v3(0, 0, 2), v3(0, 2, 0), white);
+        kit_quad(b, v3(-1, -1, -1), v3(0, 0, 2), v3(2, 0, 0), white);
+        kit_quad(b, v3(-1, 1, -1), v3(2, 0, 0), v3(0, 0, 2), white);
+        // The ceiling, around a hole of 0.4 x 0.4.
+        kit_quad(b, v3(-1, -1, 1), v3(0, 2, 0), v3(0.8f, 0, 0), white);
+        kit_quad(b, v3(0.2f, -1, 1), v3(0, 2, 0), v3(0.8f, 0, 0), white);
+        kit_quad(b, v3(-0.2f, -1, 1), v3(0, 0.8f, 0), v3(0.4f, 0, 0), white);
+        kit_quad(b, v3(-0.2f, 0.2f, 1), v3(0, 0.8f, 0), v3(0.4f, 0, 0), white);
+        if (pane)
+            kit_quad(b, v3(-0.2f, -0.2f, 1), v3(0, 0.4f, 0), v3(0.4f, 0, 0),
+                     kit_material(b, SHEEN_MATERIAL_THIN_DIELECTRIC, 0.0f, 1.0f));
+        kit_constant_environment(b, rgb_gray(5.0f));
+        kit_camera(b, v3(0, -0.9f, 0), v3(0, 1, -0.3f), v3(0, 0, 1), 1.2f);
+        Stage stage = stage_end(b, 2);
+        SheenRenderSettings s = sharp_settings(2);
+        SheenStats stats;
+        film[pane] = stage_render(&stage, &s, &stats);
+        assert_true((stats.rays_specular > 0) == pane);
+        stage_free(&stage);
+    }
+    double off = film_mean(film[1]) / film_mean(film[0]) - 1.0;
+    show("sky through a pane: mean off by %.2g\n", off);
+    assert_true(film_mean(film[0]) > 0.0 && fabs(off) < MEAN);
+    sheen_film_destroy(&film[0]);
+    sheen_film_destroy(&film[1]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -219,6 +257,7 @@ int main(void)
         cmocka_unit_test(test_each_light_alone),
         cmocka_unit_test(test_mirror_shows_the_mirrored_camera),
         cmocka_unit_test(test_pane_of_air),
+        cmocka_unit_test(test_sky_through_a_pane),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
