@@ -41,15 +41,21 @@ static inline bool record_in_front(const IrradianceRecord *r, Vec3 p, Vec3 n, fl
 }
 
 /**
- * Irradiance that the record predicts at (p, n), first order in both; never negative.
+ * Irradiance at a shift d and a turn w = n x n' from where E and its gradients (per channel) hold, first order in both;
+ * never negative.
  * Source: ward1992-gradients eq. (7); the sign of the rotation as in gather/estimate.h.
  */
+static inline Rgb irradiance_extrapolate(Rgb E, const Vec3 translation[3], const Vec3 rotation[3], Vec3 d, Vec3 w)
+{
+    return rgb(maxf(0.0f, E.r + v3_dot(d, translation[0]) + v3_dot(w, rotation[0])),
+               maxf(0.0f, E.g + v3_dot(d, translation[1]) + v3_dot(w, rotation[1])),
+               maxf(0.0f, E.b + v3_dot(d, translation[2]) + v3_dot(w, rotation[2])));
+}
+
+/** Irradiance that the record predicts at (p, n). */
 static inline Rgb record_extrapolate(const IrradianceRecord *r, Vec3 p, Vec3 n)
 {
-    Vec3 d = v3_sub(p, r->p), w = v3_cross(r->n, n);
-    return rgb(maxf(0.0f, r->E.r + v3_dot(d, r->translation[0]) + v3_dot(w, r->rotation[0])),
-               maxf(0.0f, r->E.g + v3_dot(d, r->translation[1]) + v3_dot(w, r->rotation[1])),
-               maxf(0.0f, r->E.b + v3_dot(d, r->translation[2]) + v3_dot(w, r->rotation[2])));
+    return irradiance_extrapolate(r->E, r->translation, r->rotation, v3_sub(p, r->p), v3_cross(r->n, n));
 }
 
 #endif

@@ -6,7 +6,6 @@
 #include "math/warp.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 // Measured on the Cornell box and a staircase: finer gathers or records gain nothing, coarser ones bias
 // (docs/irradiance-caching.md).
@@ -420,12 +419,11 @@ static bool interpolate(const SheenDeep *d, Vec3 p, Vec3 n, float slack, int lev
     sheen_irradiance_cache_find(d->cache, p, n, slack, &c);
     Rgb sum = rgb_gray(0.0f);
     for (unsigned i = 0; i < c.n; ++i) {
-        IrradianceRecord r = d->cache->records[c.record[i]];
+        const IrradianceRecord *r = &d->cache->records[c.record[i]];
         const DeepLight *light = &d->light[level][c.record[i]];
-        r.E = light->E;
-        memcpy(r.translation, light->translation, sizeof r.translation);
-        memcpy(r.rotation, light->rotation, sizeof r.rotation);
-        sum = rgb_mad(sum, c.weight[i], record_extrapolate(&r, p, n));
+        Rgb there =
+            irradiance_extrapolate(light->E, light->translation, light->rotation, v3_sub(p, r->p), v3_cross(r->n, n));
+        sum = rgb_mad(sum, c.weight[i], there);
     }
     *E = c.n ? rgb_scale(sum, 1.0f / c.weight_sum) : sum;
     return c.n > 0;

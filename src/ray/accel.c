@@ -158,8 +158,8 @@ static struct RTCIntersectContext batch_context(SheenCoherence coherence)
     return context;
 }
 
-// Fills lane i of a packet; returns the lane's validity mask.
-static int fill_lane(struct RTCRay16 *p, int i, const Ray *r)
+// Fills lane i of a packet.
+static void fill_lane(struct RTCRay16 *p, int i, const Ray *r)
 {
     p->org_x[i] = r->o.x;
     p->org_y[i] = r->o.y;
@@ -173,26 +173,29 @@ static int fill_lane(struct RTCRay16 *p, int i, const Ray *r)
     p->time[i] = 0.0f;
     p->flags[i] = 0;
     p->id[i] = 0;
-    return r->t_max >= 0.0f ? -1 : 0;
 }
 
-// Lanes beyond the last ray repeat it, invalid, so that no lane is uninitialised.
-static int packet_size(size_t n, size_t first)
+// Fills a packet from the front of n rays and returns how many it took. Skipped rays are invalid, and so are lanes
+// beyond the last ray, which repeat it so that none is uninitialised.
+static int fill_packet(struct RTCRay16 *p, int valid[PACKET], size_t n, const Ray rays[])
 {
-    return n - first < PACKET ? (int)(n - first) : PACKET;
+    int count = n < PACKET ? (int)n : PACKET;
+    for (int i = 0; i < PACKET; ++i) {
+        const Ray *r = &rays[i < count ? i : count - 1];
+        fill_lane(p, i, r);
+        valid[i] = i < count && r->t_max >= 0.0f ? -1 : 0;
+    }
+    return count;
 }
 
 void sheen_accel_intersect_many(const SheenAccel *a, SheenCoherence coherence, size_t n, const Ray rays[], Hit hits[])
 {
     struct RTCIntersectContext context = batch_context(coherence);
     for (size_t first = 0; first < n; first += PACKET) {
-        int count = packet_size(n, first);
         _Alignas(64) struct RTCRayHit16 p;
         _Alignas(64) int valid[PACKET];
+        int count = fill_packet(&p.ray, valid, n - first, rays + first);
         for (int i = 0; i < PACKET; ++i) {
-            bool used = i < count;
-            valid[i] = fill_lane(&p.ray, i, &rays[first + (size_t)(used ? i : count - 1)]);
-            if (!used) valid[i] = 0;
             p.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
             p.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
         }
@@ -208,14 +211,9 @@ void sheen_accel_occluded_many(const SheenAccel *a, SheenCoherence coherence, si
 {
     struct RTCIntersectContext context = batch_context(coherence);
     for (size_t first = 0; first < n; first += PACKET) {
-        int count = packet_size(n, first);
         _Alignas(64) struct RTCRay16 p;
         _Alignas(64) int valid[PACKET];
-        for (int i = 0; i < PACKET; ++i) {
-            bool used = i < count;
-            valid[i] = fill_lane(&p, i, &rays[first + (size_t)(used ? i : count - 1)]);
-            if (!used) valid[i] = 0;
-        }
+        int count = fill_packet(&p, valid, n - first, rays + first);
         rtcOccluded16(valid, a->world, &context, &p);
         // Embree marks an occluded ray by tfar = -inf; a skipped one has had a negative tfar from the start.
         for (int i = 0; i < count; ++i) occluded[first + (size_t)i] = p.tfar[i] < 0.0f;
