@@ -34,6 +34,8 @@ typedef struct Shader {
     Visibility visibility;
     DirectScratch direct;
     DiffusePoint *points; // [capacity]
+    uint32_t *keys;       // of the points' random numbers
+    uint32_t *indices;    // of the points' first light samples
     LightNumbers *numbers;
     Rgb *irradiance;
     size_t capacity;
@@ -50,16 +52,25 @@ typedef struct ShadeTask {
     Uncovered *uncovered; // [tiles]
 } ShadeTask;
 
+static void free_points(Shader *s)
+{
+    free(s->points);
+    free(s->keys);
+    free(s->indices);
+    free(s->numbers);
+    free(s->irradiance);
+}
+
 static bool reserve(Shader *s, size_t n)
 {
     if (n <= s->capacity) return true;
-    free(s->points);
-    free(s->numbers);
-    free(s->irradiance);
+    free_points(s);
     s->points = malloc(n * sizeof *s->points);
+    s->keys = malloc(n * sizeof *s->keys);
+    s->indices = malloc(n * sizeof *s->indices);
     s->numbers = malloc(n * sizeof *s->numbers);
     s->irradiance = malloc(n * sizeof *s->irradiance);
-    s->capacity = s->points && s->numbers && s->irradiance ? n : 0;
+    s->capacity = s->points && s->keys && s->indices && s->numbers && s->irradiance ? n : 0;
     return s->capacity > 0 && sheen_direct_reserve(&s->direct, n);
 }
 
@@ -67,9 +78,7 @@ static void shader_free(Shader *s)
 {
     sheen_visibility_free(&s->visibility);
     sheen_direct_free(&s->direct);
-    free(s->points);
-    free(s->numbers);
-    free(s->irradiance);
+    free_points(s);
 }
 
 // Adds the light that a point reflects for irradiance E, and counts it as `aov`.
@@ -86,27 +95,33 @@ static void add_reflected(const SheenWork *work, const ShadingPoint *p, Rgb E, S
     film_add(film, aov, p->pixel % work->width, p->pixel / work->width, value);
 }
 
+// Numbers of light sample j of each point. Without branches or calls: the compiler makes vector instructions of it.
+static void light_numbers(size_t n, const uint32_t keys[], const uint32_t indices[], uint32_t j, LightNumbers out[])
+{
+    for (size_t i = 0; i < n; ++i) {
+        SheenSampler sampler = sampler_make(keys[i], indices[i] + j);
+        out[i].choice = hash_to_unit(keys[i] + sampler.index * 0x9e3779b9u); // steps of the golden ratio
+        out[i].place = sampler_2d(&sampler);
+    }
+}
+
 static bool direct_light(const SheenWork *work, Shader *s, SheenFilm *film)
 {
     size_t n = s->visibility.n_points;
     const ShadingPoint *points = s->visibility.points;
     if (n == 0 || sheen_lights_count(work->lights) == 0) return true;
     if (!reserve(s, n)) return false;
-    for (size_t i = 0; i < n; ++i) {
-        s->points[i] = points[i].point;
-        s->irradiance[i] = rgb_gray(0.0f);
-    }
     uint32_t lights = sheen_lights_count(work->lights);
     uint32_t per_point = work->options.light_samples ? work->options.light_samples : lights < 4 ? lights : 4;
+    for (size_t i = 0; i < n; ++i) {
+        uint32_t x = points[i].pixel % work->width, y = points[i].pixel / work->width;
+        s->points[i] = points[i].point;
+        s->irradiance[i] = rgb_gray(0.0f);
+        s->keys[i] = hash_combine(work->options.seed ^ KEY_LIGHT, points[i].branch);
+        s->indices[i] = sheen_sample_index(x, y, work->options.spp * per_point, points[i].sample * per_point);
+    }
     for (uint32_t j = 0; j < per_point; ++j) {
-        for (size_t i = 0; i < n; ++i) {
-            uint32_t x = points[i].pixel % work->width, y = points[i].pixel / work->width;
-            uint32_t key = hash_combine(work->options.seed ^ KEY_LIGHT, points[i].branch);
-            uint32_t index = sheen_sample_index(x, y, work->options.spp * per_point, points[i].sample * per_point + j);
-            SheenSampler sampler = sampler_make(key, index);
-            s->numbers[i].choice = hash_to_unit(key + index * 0x9e3779b9u); // steps of the golden ratio
-            s->numbers[i].place = sampler_2d(&sampler);
-        }
+        light_numbers(n, s->keys, s->indices, j, s->numbers);
         s->stats.rays_shadow +=
             sheen_direct_add(work, n, s->points, s->numbers, 1.0f / (float)per_point, &s->direct, s->irradiance);
     }
