@@ -25,7 +25,7 @@ static const float cell_per_distance = 0.2f;
 
 /** What a stratum of a deep gather saw. */
 typedef struct DeepCell {
-    Vec3 p, n, ng;  // the hit's vertex
+    Vec3 p, n, ng;  // the hit's vertex; p is off the surface, where rays leave
     Rgb weight;     // radiance per irradiance there; black without vertex
     Rgb sky;        // radiance of the sky and of caustics
     Rgb direct;     // weight times direct irradiance
@@ -165,7 +165,7 @@ static void gather_task(void *user, size_t item, unsigned worker)
     for (size_t i = 0; i < h->n_vertices; ++i) {
         const GatherVertex *v = &h->vertices[i];
         DeepCell *c = &cells[v->cell];
-        c->p = v->point.p;
+        c->p = v->point.origin;
         c->n = v->point.n;
         c->ng = v->point.ng;
         c->weight = v->weight;
@@ -207,7 +207,7 @@ static SheenStatus queue_uncovered(const SheenDeep *d, uint32_t first, Queue *q)
         for (size_t i = 0; i < strata_count(deep_strata); ++i) {
             const DeepCell *c = &cells[i];
             if (rgb_is_black(c->weight) || c->share[0] > 0.0f) continue;
-            DiffusePoint p = {c->p, sheen_surface_offset(c->p, c->ng), c->ng, c->n, rgb_scale(c->weight, SHEEN_PI)};
+            DiffusePoint p = {c->p, c->p, c->ng, c->n, rgb_scale(c->weight, SHEEN_PI)};
             if (!queue_push(q, &p)) return SHEEN_ERR_NOMEM;
         }
     }

@@ -8,7 +8,7 @@ bool sheen_diffuse_point(const SheenScene *scene, const SurfacePoint *s, Vec3 wo
     if (!front && !bsdf.material->two_sided) return false;
     if (rgb_is_black(bsdf.reflectance)) return false;
     Vec3 ng = front ? s->ng : v3_neg(s->ng), n = front ? s->ns : v3_neg(s->ns);
-    *out = (DiffusePoint){s->p, sheen_surface_offset(s->p, ng), ng, n, bsdf.reflectance};
+    *out = (DiffusePoint){s->p, sheen_surface_leave(s, ng), ng, n, bsdf.reflectance};
     return true;
 }
 

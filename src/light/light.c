@@ -168,10 +168,13 @@ static bool sample_area(const Source *s, Vec3 p, Vec2 u, LightSample *out)
 {
     SourcePoint point;
     if (!sheen_source_sample_area(s, p, u, &point) || !(point.pdf > 0.0f)) return false;
-    Vec3 wi = v3_normalize(v3_sub(point.q, p));
+    Vec3 d = v3_sub(point.q, p);
+    float distance = v3_length(d);
+    Vec3 wi = v3_scale(d, 1.0f / distance);
     if (!(v3_dot(wi, point.n) < 0.0f)) return false;
+    float clearance = sheen_surface_clearance(point.q, point.n, s->radius + distance);
     *out = (LightSample){.wi = wi,
-                         .target = sheen_surface_offset(point.q, point.n),
+                         .target = v3_mad(point.q, clearance, point.n),
                          .radiance = rgb_scale(s->light->radiance, 1.0f / point.pdf),
                          .pdf = point.pdf};
     return true;

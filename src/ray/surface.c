@@ -1,15 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ray/surface.h"
 
-#include <string.h>
+// What the rounding of a point and of rays from it is in proportion to, axis by axis.
+typedef struct Magnitude {
+    Vec3 position; // coordinates that were added up
+    Vec3 extent;   // of the primitive: how far its vertices are from the point
+} Magnitude;
 
-static void surface_of_mesh(const SheenMesh *mesh, const Hit *hit, SurfacePoint *s)
+static Vec3 v3_abs(Vec3 a)
+{
+    return v3(fabsf(a.x), fabsf(a.y), fabsf(a.z));
+}
+
+// Distance off the surface that covers the rounding of a point on it, and of the ray's test against it: both rise with
+// the coordinates and with the primitive's size, but only by what the normal sees of them. A wall that is parallel to
+// an axis has no such errors; a share of its size too small for any other effect keeps the ray off it. As
+// waechter2019-offset, ch. 6, in units of rounding, but without an absolute length, and with the primitive's part. Both
+// factors are twice and more of where rays first hit the surface again in tests/unit/test_surface_offset.c.
+static float clearance(const Magnitude *m, Vec3 n)
+{
+    const float unit = 0x1p-24f, position = 4.0f, extent = 4.0f, least = 0.25f;
+    Vec3 e = v3_mad(v3_scale(m->position, position), extent, m->extent);
+    float largest = maxf(m->extent.x, maxf(m->extent.y, m->extent.z));
+    return unit * (v3_dot(v3_abs(n), e) + least * largest);
+}
+
+float sheen_surface_clearance(Vec3 p, Vec3 n, float extent)
+{
+    Magnitude m = {v3_abs(p), v3(extent, extent, extent)};
+    return clearance(&m, n);
+}
+
+static Magnitude surface_of_mesh(const SheenMesh *mesh, const Hit *hit, SurfacePoint *s)
 {
     const uint32_t *tri = mesh->triangles[hit->triangle];
     Vec3 p0 = mesh->p[tri[0]], e1 = v3_sub(mesh->p[tri[1]], p0), e2 = v3_sub(mesh->p[tri[2]], p0);
+    Vec3 cross = v3_cross(e1, e2);
     float u = hit->u, v = hit->v, w = 1.0f - u - v;
     s->p = v3_mad(v3_mad(p0, u, e1), v, e2);
-    s->ng = v3_normalize(v3_cross(e1, e2));
+    s->ng = v3_normalize(cross);
     s->ns = s->ng;
     if (mesh->n) {
         Vec3 n = v3_mad(v3_mad(v3_scale(mesh->n[tri[0]], w), u, mesh->n[tri[1]]), v, mesh->n[tri[2]]);
@@ -21,9 +50,12 @@ static void surface_of_mesh(const SheenMesh *mesh, const Hit *hit, SurfacePoint 
         s->uv = v2(w * t[tri[0]].x + u * t[tri[1]].x + v * t[tri[2]].x,
                    w * t[tri[0]].y + u * t[tri[1]].y + v * t[tri[2]].y);
     }
+    // The normal of a sliver is a difference of products that nearly cancel.
+    float cancelled = minf(sqrtf(v3_length2(e1) * (v3_length2(e2) / v3_length2(cross))), 1024.0f);
+    return (Magnitude){v3_abs(s->p), v3_scale(v3_add(v3_abs(e1), v3_abs(e2)), cancelled)};
 }
 
-static void surface_of_sphere(const SheenSphere *sphere, Vec3 hit_point, SurfacePoint *s)
+static Magnitude surface_of_sphere(const SheenSphere *sphere, Vec3 hit_point, SurfacePoint *s)
 {
     Vec3 d = v3_normalize(v3_sub(hit_point, sphere->center));
     s->p = v3_mad(sphere->center, sphere->radius, d);
@@ -33,9 +65,11 @@ static void surface_of_sphere(const SheenSphere *sphere, Vec3 hit_point, Surface
     float azimuth = atan2f(l.y, l.x);
     if (azimuth < 0.0f) azimuth += 2.0f * SHEEN_PI;
     s->uv = v2(azimuth * (0.5f * SHEEN_INV_PI), acosf(clampf(l.z, -1.0f, 1.0f)) * SHEEN_INV_PI);
+    float r = sphere->radius;
+    return (Magnitude){v3_abs(s->p), v3(r, r, r)};
 }
 
-static void surface_of_disk(const SheenDisk *disk, Vec3 hit_point, SurfacePoint *s)
+static Magnitude surface_of_disk(const SheenDisk *disk, Vec3 hit_point, SurfacePoint *s)
 {
     Vec3 q = v3_sub(hit_point, disk->center);
     q = v3_mad(q, -v3_dot(q, disk->n), disk->n); // onto the plane
@@ -48,6 +82,25 @@ static void surface_of_disk(const SheenDisk *disk, Vec3 hit_point, SurfacePoint 
     float azimuth = atan2f(y, x);
     if (azimuth < 0.0f) azimuth += 2.0f * SHEEN_PI;
     s->uv = v2(sqrtf(x * x + y * y), azimuth * (0.5f * SHEEN_INV_PI));
+    return (Magnitude){v3_abs(s->p), v3_add(v3_abs(disk->du), v3_abs(disk->dv))};
+}
+
+static Vec3 transform_magnitude(const Transform *t, Vec3 a, bool is_point)
+{
+    float r[3], v[3] = {a.x, a.y, a.z};
+    for (int i = 0; i < 3; ++i) {
+        r[i] = is_point ? (float)fabs(t->m[i][3]) : 0.0f;
+        for (int j = 0; j < 3; ++j) r[i] += (float)fabs(t->m[i][j]) * v[j];
+    }
+    return v3(r[0], r[1], r[2]);
+}
+
+// Rays are taken into the group's space and points out of it again.
+static Magnitude magnitude_of_instance(const SheenInstance *instance, const Magnitude *m, Vec3 p)
+{
+    Vec3 in_group = transform_magnitude(&instance->to_group, v3_abs(p), true);
+    return (Magnitude){transform_magnitude(&instance->to_world, v3_add(in_group, m->position), true),
+                       transform_magnitude(&instance->to_world, m->extent, false)};
 }
 
 void sheen_surface_from_hit(const SheenScene *scene, const Ray *ray, const Hit *hit, SurfacePoint *out)
@@ -59,45 +112,25 @@ void sheen_surface_from_hit(const SheenScene *scene, const Ray *ray, const Hit *
     out->shape = hit->shape;
     out->triangle = hit->triangle;
     out->instance = hit->instance;
+    Magnitude magnitude = {0};
     switch (shape->kind) {
     case SHEEN_SHAPE_MESH:
-        surface_of_mesh(&shape->mesh, hit, out);
+        magnitude = surface_of_mesh(&shape->mesh, hit, out);
         break;
     case SHEEN_SHAPE_SPHERE:
-        surface_of_sphere(&shape->sphere, p, out);
+        magnitude = surface_of_sphere(&shape->sphere, p, out);
         break;
     case SHEEN_SHAPE_DISK:
-        surface_of_disk(&shape->disk, p, out);
+        magnitude = surface_of_disk(&shape->disk, p, out);
         break;
     }
     if (instance) {
         out->p = transform_point(&instance->to_world, out->p);
         out->ng = transform_normal(&instance->to_group, out->ng);
         out->ns = transform_normal(&instance->to_group, out->ns);
+        magnitude = magnitude_of_instance(instance, &magnitude, out->p);
     }
+    out->clearance = clearance(&magnitude, out->ng);
     // Far from its vertices an interpolated normal may turn away: light would then come from the wrong side.
     if (v3_dot(out->ng, out->ns) < 0.0f) out->ns = out->ng;
-}
-
-// Moves x by k units in the last place, away from zero when k and x have one sign.
-static float move_ulps(float x, int k)
-{
-    int32_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    bits += x < 0.0f ? -k : k;
-    memcpy(&x, &bits, sizeof bits);
-    return x;
-}
-
-static float offset_axis(float p, float n)
-{
-    // Near zero units in the last place shrink to nothing: an absolute step takes over there.
-    const float near_zero = 1.0f / 32.0f, absolute = 1.0f / 65536.0f, ulps = 256.0f;
-    if (fabsf(p) < near_zero) return p + absolute * n;
-    return move_ulps(p, (int)(ulps * n));
-}
-
-Vec3 sheen_surface_offset(Vec3 p, Vec3 n)
-{
-    return v3(offset_axis(p.x, n.x), offset_axis(p.y, n.y), offset_axis(p.z, n.z));
 }

@@ -14,24 +14,34 @@ typedef struct SurfacePoint {
     uint32_t shape; // index into scene->shapes
     uint32_t triangle;
     uint32_t instance;
+    float clearance; // metres off the surface, along ng, where rays leave
 } SurfacePoint;
 
 /** Completes a hit. `hit->shape` must not be SHEEN_NONE. Pure, thread-safe. */
 void sheen_surface_from_hit(const SheenScene *scene, const Ray *ray, const Hit *hit, SurfacePoint *out);
 
 /**
- * Moves p off its surface, along `n`, by a few units in the last place of its coordinates: far enough that a ray from
- * there does not hit the surface it left, near enough that nothing fits between at any scale.
- * @param n  geometric normal, on the side to which the ray goes
- * Source: waechter2019-offset, ch. 6.
+ * @param n  geometric normal, on the side to which rays go
+ * @return a point off the surface from which a ray on that side does not hit it again. The distance follows the
+ * rounding of the coordinates and the size of the primitive, a few millionths of it, whatever the scale of the scene.
  */
-Vec3 sheen_surface_offset(Vec3 p, Vec3 n);
+static inline Vec3 sheen_surface_leave(const SurfacePoint *s, Vec3 n)
+{
+    return v3_mad(s->p, s->clearance, n);
+}
+
+/**
+ * The distance off a surface for a point p on it that no ray has hit.
+ * @param n       unit normal
+ * @param extent  size of the primitive, or the length of a ray that shall end there when that is more, metres
+ */
+float sheen_surface_clearance(Vec3 p, Vec3 n, float extent);
 
 /** A ray from `s` in direction d (unit), offset to the side of ng to which d points. */
 static inline Ray sheen_surface_ray(const SurfacePoint *s, Vec3 d)
 {
     Vec3 n = v3_dot(d, s->ng) >= 0.0f ? s->ng : v3_neg(s->ng);
-    return (Ray){sheen_surface_offset(s->p, n), INFINITY, d};
+    return (Ray){sheen_surface_leave(s, n), INFINITY, d};
 }
 
 #endif

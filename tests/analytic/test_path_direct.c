@@ -290,7 +290,7 @@ static void test_weighted_equals_each_technique(void **state)
     kit_constant_environment(p.b, rgb_gray(0.5f));
     Kit kit;
     kit_end(p.b, 2, &kit);
-    SurfacePoint s = {.p = p.at, .ng = v3(0, 0, 1), .ns = v3(0, 0, 1)};
+    SurfacePoint s = {.p = p.at, .ng = v3(0, 0, 1), .ns = v3(0, 0, 1), .clearance = 1e-6f};
     Estimate by_lights = irradiance_by_lights(&kit, &s, 1 << 16), by_rays = irradiance_by_rays(&kit, &s, 1 << 16);
     double scale = (double)(ALBEDO * SHEEN_INV_PI);
     for (uint32_t light_samples = 1; light_samples <= 3; light_samples += 2) {

@@ -58,8 +58,8 @@ static void patch_point(const Patch *patch, double s, double t, SurfacePoint *ou
     }
 }
 
-// The place of a point on its patch; false when it is not there.
-static bool patch_place(const Patch *patch, Vec3 q, double *s, double *t)
+// The place of a point on its patch, or above it by `off`; false when it is not there.
+static bool patch_place(const Patch *patch, Vec3 q, double off, double *s, double *t)
 {
     const SheenShape *shape = patch->shape;
     if (shape->kind == SHEEN_SHAPE_MESH) {
@@ -70,7 +70,7 @@ static bool patch_place(const Patch *patch, Vec3 q, double *s, double *t)
         double b1 = (double)v3_dot(v3_cross(d, e2), n) / n2, b2 = (double)v3_dot(v3_cross(e1, d), n) / n2;
         *t = b2;
         *s = b2 < 1 ? b1 / (1 - b2) : 0;
-        return fabs((double)v3_dot(d, n)) <= 1e-4 * sqrt(n2) && b1 > -1e-4 && b2 > -1e-4 && b1 + b2 < 1.0001;
+        return fabs((double)v3_dot(d, n)) <= (1e-4 + off) * sqrt(n2) && b1 > -1e-4 && b2 > -1e-4 && b1 + b2 < 1.0001;
     }
     double x, y;
     if (shape->kind == SHEEN_SHAPE_DISK) {
@@ -147,8 +147,8 @@ static double check(const LightScene *scene, Vec3 p)
             continue;
         }
         uint32_t k = 0;
-        double s = 0, t = 0;
-        while (k < n_patches && !patch_place(&patches[k], sample.target, &s, &t)) ++k;
+        double s = 0, t = 0, off = 1e-6 * (double)v3_length(v3_sub(sample.target, p)); // as long rays are rounded
+        while (k < n_patches && !patch_place(&patches[k], sample.target, off, &s, &t)) ++k;
         assert_true(k < n_patches);
         observed[k * SIDE * SIDE + (uint32_t)(bin_of(s) * SIDE + bin_of(t))] += 1;
         // The density of the sample is that of its point; the offset of the target moves it a little.

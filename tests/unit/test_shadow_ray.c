@@ -52,6 +52,7 @@ static int count_occluded(const Traced *t, Vec3 p, float spread)
         SurfacePoint s = {.p = v3_add(p, v3(random_in(&r, -spread, spread), random_in(&r, -spread, spread), 0)),
                           .ng = v3(0, 0, 1),
                           .ns = v3(0, 0, 1)};
+        s.clearance = sheen_surface_clearance(s.p, s.ng, 2.0f * spread);
         LightSample sample;
         if (!sheen_light_sample(t->lights.lights, 0, s.p, random_2d(&r), &sample)) continue;
         ++n_sampled;
