@@ -41,9 +41,9 @@ typedef struct Clamp {
     bool shrink;    // second pass
 } Clamp;
 
-static void clamp_entry(Clamp *c, const OctreeEntry *e)
+static void clamp_record(Clamp *c, uint32_t record)
 {
-    IrradianceRecord *r = &c->cache->records[e->record];
+    IrradianceRecord *r = &c->cache->records[record];
     float d = v3_length(v3_sub(r->p, c->p));
     if (c->shrink)
         r->R = maxf(r->R_min, minf(r->R, c->limit + d));
@@ -61,7 +61,8 @@ static void clamp_visit(Clamp *c, uint32_t node, Vec3 lo, float side)
     if (c->p.x + R < lo.x || c->p.x - R > lo.x + side || c->p.y + R < lo.y || c->p.y - R > lo.y + side ||
         c->p.z + R < lo.z || c->p.z - R > lo.z + side)
         return;
-    for (uint32_t e = t->nodes[node].entries; e; e = t->entries[e].next) clamp_entry(c, &t->entries[e]);
+    for (uint32_t b = t->nodes[node].blocks; b; b = t->blocks[b].next)
+        for (uint32_t i = 0; i < t->blocks[b].n; ++i) clamp_record(c, t->blocks[b].record[i]);
     float half = 0.5f * side;
     for (unsigned o = 0; o < 8; ++o) {
         uint32_t child = t->nodes[node].child[o];
@@ -99,19 +100,30 @@ SheenStatus sheen_irradiance_cache_insert(SheenIrradianceCache *c, const Irradia
     return SHEEN_OK;
 }
 
-static void consider(const SheenIrradianceCache *c, const OctreeEntry *e, Vec3 p, Vec3 n, float slack,
+// Takes a record when it serves the point. @param d2  squared distance, below the square of the record's reach
+static void consider(const SheenIrradianceCache *c, uint32_t record, float d2, Vec3 p, Vec3 n, float slack,
                      Contributors *out)
 {
-    Vec3 v = v3_sub(p, e->center);
-    float d2 = v3_length2(v);
-    if (d2 >= e->reach2) return;
-    const IrradianceRecord *r = &c->records[e->record];
+    const IrradianceRecord *r = &c->records[record];
     float w = record_weight(r->R, d2, v3_dot(n, r->n)) - 1.0f / c->accuracy;
     if (!(w > 0.0f) || record_in_front(r, p, n, c->accuracy, slack) || out->n == SHEEN_CONTRIBUTORS_MAX) return;
     w = minf(w, weight_max);
-    out->record[out->n] = e->record;
+    out->record[out->n] = record;
     out->weight[out->n++] = w;
     out->weight_sum += w;
+}
+
+// The records of a block that reach the point, the newest first.
+static void consider_block(const SheenIrradianceCache *c, const OctreeBlock *b, Vec3 p, Vec3 n, float slack,
+                           Contributors *out)
+{
+    float d2[SHEEN_OCTREE_LANES];
+    octree_block_distances2(b, p, d2);
+    for (unsigned lanes = octree_block_holding(b, d2); lanes != 0;) {
+        unsigned lane = 31u - (unsigned)__builtin_clz(lanes);
+        lanes ^= 1u << lane;
+        consider(c, b->record[lane], d2[lane], p, n, slack, out);
+    }
 }
 
 void sheen_irradiance_cache_find(const SheenIrradianceCache *c, Vec3 p, Vec3 n, float slack, Contributors *out)
@@ -120,8 +132,8 @@ void sheen_irradiance_cache_find(const SheenIrradianceCache *c, Vec3 p, Vec3 n, 
     out->weight_sum = 0.0f;
     const SheenOctree *t = c->octree;
     for (OctreeWalk walk = octree_walk(t); walk.node != SHEEN_OCTREE_END; octree_descend(t, &walk, p))
-        for (uint32_t e = t->nodes[walk.node].entries; e; e = t->entries[e].next)
-            consider(c, &t->entries[e], p, n, slack, out);
+        for (uint32_t b = t->nodes[walk.node].blocks; b; b = t->blocks[b].next)
+            consider_block(c, &t->blocks[b], p, n, slack, out);
 }
 
 float sheen_irradiance_cache_expect_radius(const SheenIrradianceCache *c, Vec3 p)
@@ -129,9 +141,11 @@ float sheen_irradiance_cache_expect_radius(const SheenIrradianceCache *c, Vec3 p
     float least = INFINITY;
     const SheenOctree *t = c->octree;
     for (OctreeWalk walk = octree_walk(t); walk.node != SHEEN_OCTREE_END; octree_descend(t, &walk, p))
-        for (uint32_t e = t->nodes[walk.node].entries; e; e = t->entries[e].next) {
-            const OctreeEntry *entry = &t->entries[e];
-            least = minf(least, sqrtf(entry->reach2) / c->accuracy + v3_length(v3_sub(p, entry->center)));
+        for (uint32_t b = t->nodes[walk.node].blocks; b; b = t->blocks[b].next) {
+            float d2[SHEEN_OCTREE_LANES];
+            octree_block_distances2(&t->blocks[b], p, d2);
+            for (int i = 0; i < SHEEN_OCTREE_LANES; ++i)
+                least = minf(sqrtf(t->blocks[b].reach2[i]) / c->accuracy + sqrtf(d2[i]), least);
         }
     return least;
 }

@@ -21,11 +21,11 @@ SheenStatus sheen_octree_create(const Bounds *bounds, SheenOctree **out)
     t->side = side;
     t->smallest = smallest_share * maxf(side, maxf(fabsf(c.x), maxf(fabsf(c.y), fabsf(c.z))));
     t->lo = v3(c.x - 0.5f * side, c.y - 0.5f * side, c.z - 0.5f * side);
-    t->node_capacity = t->entry_capacity = 64;
+    t->node_capacity = t->block_capacity = 64;
     t->nodes = calloc(t->node_capacity, sizeof *t->nodes);
-    t->entries = calloc(t->entry_capacity, sizeof *t->entries);
-    t->n_nodes = t->n_entries = 1;
-    if (!t->nodes || !t->entries) {
+    t->blocks = calloc(t->block_capacity, sizeof *t->blocks);
+    t->n_nodes = t->n_blocks = 1;
+    if (!t->nodes || !t->blocks) {
         sheen_octree_destroy(&t);
         return SHEEN_ERR_NOMEM;
     }
@@ -37,15 +37,22 @@ void sheen_octree_destroy(SheenOctree **tree)
 {
     if (!tree || !*tree) return;
     free((*tree)->nodes);
-    free((*tree)->entries);
+    free((*tree)->blocks);
     free(*tree);
     *tree = NULL;
 }
 
 uint64_t sheen_octree_bytes(const SheenOctree *t)
 {
-    return (uint64_t)t->n_nodes * sizeof *t->nodes + (uint64_t)t->n_entries * sizeof *t->entries;
+    return (uint64_t)t->n_nodes * sizeof *t->nodes + (uint64_t)t->n_blocks * sizeof *t->blocks;
 }
+
+/** A sphere to be inserted. */
+typedef struct Sphere {
+    Vec3 center;
+    float radius;
+    uint32_t record;
+} Sphere;
 
 // Returns the child's number, 0 when out of memory.
 static uint32_t child_of(SheenOctree *t, uint32_t node, unsigned octant)
@@ -64,18 +71,32 @@ static uint32_t child_of(SheenOctree *t, uint32_t node, unsigned octant)
     return child;
 }
 
-static SheenStatus add_entry(SheenOctree *t, uint32_t node, const OctreeEntry *entry)
+// Puts an empty block in front of a node's list. @return false when out of memory
+static bool add_block(SheenOctree *t, uint32_t node)
 {
-    if (t->n_entries == t->entry_capacity) {
-        if (t->entry_capacity > UINT32_MAX / 2) return SHEEN_ERR_NOMEM;
-        OctreeEntry *grown = realloc(t->entries, 2 * (size_t)t->entry_capacity * sizeof *grown);
-        if (!grown) return SHEEN_ERR_NOMEM;
-        t->entries = grown;
-        t->entry_capacity *= 2;
+    if (t->n_blocks == t->block_capacity) {
+        if (t->block_capacity > UINT32_MAX / 2) return false;
+        OctreeBlock *grown = realloc(t->blocks, 2 * (size_t)t->block_capacity * sizeof *grown);
+        if (!grown) return false;
+        t->blocks = grown;
+        t->block_capacity *= 2;
     }
-    t->entries[t->n_entries] = *entry;
-    t->entries[t->n_entries].next = t->nodes[node].entries;
-    t->nodes[node].entries = t->n_entries++;
+    OctreeBlock *b = &t->blocks[t->n_blocks];
+    *b = (OctreeBlock){.next = t->nodes[node].blocks};
+    for (int i = 0; i < SHEEN_OCTREE_LANES; ++i) b->x[i] = INFINITY;
+    t->nodes[node].blocks = t->n_blocks++;
+    return true;
+}
+
+static SheenStatus add_sphere(SheenOctree *t, uint32_t node, const Sphere *s)
+{
+    uint32_t first = t->nodes[node].blocks;
+    if ((first == 0 || t->blocks[first].n == SHEEN_OCTREE_LANES) && !add_block(t, node)) return SHEEN_ERR_NOMEM;
+    OctreeBlock *b = &t->blocks[t->nodes[node].blocks];
+    uint32_t lane = b->n++;
+    b->x[lane] = s->center.x, b->y[lane] = s->center.y, b->z[lane] = s->center.z;
+    b->reach2[lane] = s->radius * s->radius;
+    b->record[lane] = s->record;
     return SHEEN_OK;
 }
 
@@ -84,24 +105,24 @@ static float outside(float x, float lo, float hi)
     return x < lo ? lo - x : x > hi ? x - hi : 0.0f;
 }
 
-static bool overlaps(const OctreeEntry *e, Vec3 lo, float side)
+static bool overlaps(const Sphere *s, Vec3 lo, float side)
 {
-    float x = outside(e->center.x, lo.x, lo.x + side), y = outside(e->center.y, lo.y, lo.y + side),
-          z = outside(e->center.z, lo.z, lo.z + side);
-    return x * x + y * y + z * z <= e->reach2;
+    float x = outside(s->center.x, lo.x, lo.x + side), y = outside(s->center.y, lo.y, lo.y + side),
+          z = outside(s->center.z, lo.z, lo.z + side);
+    return x * x + y * y + z * z <= s->radius * s->radius;
 }
 
-static SheenStatus insert(SheenOctree *t, uint32_t node, Vec3 lo, float side, float radius, const OctreeEntry *entry)
+static SheenStatus insert(SheenOctree *t, uint32_t node, Vec3 lo, float side, const Sphere *s)
 {
-    if (side <= 4.0f * radius || side <= t->smallest) return add_entry(t, node, entry);
+    if (side <= 4.0f * s->radius || side <= t->smallest) return add_sphere(t, node, s);
     float half = 0.5f * side;
     for (unsigned octant = 0; octant < 8; ++octant) {
         Vec3 corner =
             v3(octant & 1 ? lo.x + half : lo.x, octant & 2 ? lo.y + half : lo.y, octant & 4 ? lo.z + half : lo.z);
-        if (!overlaps(entry, corner, half)) continue;
+        if (!overlaps(s, corner, half)) continue;
         uint32_t child = child_of(t, node, octant);
         if (!child) return SHEEN_ERR_NOMEM;
-        SheenStatus status = insert(t, child, corner, half, radius, entry);
+        SheenStatus status = insert(t, child, corner, half, s);
         if (status != SHEEN_OK) return status;
     }
     return SHEEN_OK;
@@ -110,6 +131,6 @@ static SheenStatus insert(SheenOctree *t, uint32_t node, Vec3 lo, float side, fl
 SheenStatus sheen_octree_insert(SheenOctree *t, Vec3 center, float radius, uint32_t record)
 {
     if (!(radius > 0.0f) || !v3_finite(center)) return SHEEN_OK; // holds no point
-    OctreeEntry entry = {center, radius * radius, record, 0};
-    return insert(t, 0, t->lo, t->side, radius, &entry);
+    Sphere sphere = {center, radius, record};
+    return insert(t, 0, t->lo, t->side, &sphere);
 }

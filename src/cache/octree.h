@@ -10,17 +10,19 @@
 
 typedef struct SheenOctree SheenOctree;
 
-/** One sphere in a node's list. */
-typedef struct OctreeEntry {
-    Vec3 center;
-    float reach2;    // squared radius at insertion
-    uint32_t record; // the caller's number
-    uint32_t next;   // entry of the same node, 0 at the end
-} OctreeEntry;
+/** Up to eight spheres of a node's list. A free lane holds no point: its centre is infinitely far. */
+enum { SHEEN_OCTREE_LANES = 8 };
+typedef struct OctreeBlock {
+    float x[SHEEN_OCTREE_LANES], y[SHEEN_OCTREE_LANES], z[SHEEN_OCTREE_LANES]; // centers
+    float reach2[SHEEN_OCTREE_LANES];                                          // squared radii at insertion
+    uint32_t record[SHEEN_OCTREE_LANES];                                       // the caller's numbers
+    uint32_t n;                                                                // lanes in use, the first ones
+    uint32_t next;                                                             // block of the same node, 0 at the end
+} OctreeBlock;
 
 typedef struct OctreeNode {
     uint32_t child[8]; // 0 for none
-    uint32_t entries;  // first entry, 0 for none
+    uint32_t blocks;   // first block, the newest; 0 for none
 } OctreeNode;
 
 struct SheenOctree {
@@ -28,9 +30,9 @@ struct SheenOctree {
     float side;     // of the root, metres
     float smallest; // side below which no node is divided
     OctreeNode *nodes;
-    OctreeEntry *entries;
-    uint32_t n_nodes, n_entries; // node 0 is the root, entry 0 is unused
-    uint32_t node_capacity, entry_capacity;
+    OctreeBlock *blocks;
+    uint32_t n_nodes, n_blocks; // node 0 is the root, block 0 is unused
+    uint32_t node_capacity, block_capacity;
 };
 
 /** @param bounds  where points will be; spheres may stick out */
@@ -45,6 +47,20 @@ SHEEN_NODISCARD SheenStatus sheen_octree_insert(SheenOctree *tree, Vec3 center, 
 
 /** Bytes in use. */
 uint64_t sheen_octree_bytes(const SheenOctree *tree);
+
+/** Squared distances from p to the centers of a block. */
+static inline void octree_block_distances2(const OctreeBlock *b, Vec3 p, float d2[SHEEN_OCTREE_LANES])
+{
+    for (int i = 0; i < SHEEN_OCTREE_LANES; ++i) d2[i] = v3_length2(v3_sub(p, v3(b->x[i], b->y[i], b->z[i])));
+}
+
+/** @return bit i for each lane i whose sphere holds a point with these squared distances to the centers. */
+static inline unsigned octree_block_holding(const OctreeBlock *b, const float d2[SHEEN_OCTREE_LANES])
+{
+    unsigned lanes = 0;
+    for (unsigned i = 0; i < SHEEN_OCTREE_LANES; ++i) lanes |= d2[i] < b->reach2[i] ? 1u << i : 0u;
+    return lanes;
+}
 
 /** A walk down from the root to the deepest node that holds a point. */
 typedef struct OctreeWalk {

@@ -41,20 +41,33 @@ static SheenOctree *tree_of(Bounds bounds, const Ball balls[], uint32_t n)
     return tree;
 }
 
-// Marks what a walk to p meets whose sphere holds p; returns how many entries it looked at.
+// Marks the lanes whose sphere holds p; returns how many lanes are in use.
+static size_t meet_block(const OctreeBlock *b, Vec3 p, uint32_t n, unsigned char met[])
+{
+    float d2[SHEEN_OCTREE_LANES];
+    octree_block_distances2(b, p, d2);
+    unsigned holding = octree_block_holding(b, d2);
+    assert_in_range(b->n, 1, SHEEN_OCTREE_LANES);
+    assert_int_equal(holding >> b->n, 0); // a free lane holds no point
+    for (uint32_t i = 0; i < b->n; ++i) {
+        assert_in_range(b->record[i], 0, n - 1);
+        Vec3 center = v3(b->x[i], b->y[i], b->z[i]);
+        assert_int_equal(holding >> i & 1, v3_length2(v3_sub(p, center)) < b->reach2[i]);
+        if (!(holding >> i & 1)) continue;
+        assert_int_equal(met[b->record[i]], 0); // a walk passes each level once: no record is met twice
+        met[b->record[i]] = 1;
+    }
+    return b->n;
+}
+
+// Marks what a walk to p meets whose sphere holds p; returns how many spheres it looked at.
 static size_t meet(const SheenOctree *tree, Vec3 p, uint32_t n, unsigned char met[])
 {
     size_t looked = 0;
     for (uint32_t i = 0; i < n; ++i) met[i] = 0;
     for (OctreeWalk walk = octree_walk(tree); walk.node != SHEEN_OCTREE_END; octree_descend(tree, &walk, p))
-        for (uint32_t e = tree->nodes[walk.node].entries; e; e = tree->entries[e].next) {
-            const OctreeEntry *entry = &tree->entries[e];
-            assert_in_range(entry->record, 0, n - 1);
-            ++looked;
-            if (!(v3_length2(v3_sub(p, entry->center)) < entry->reach2)) continue;
-            assert_int_equal(met[entry->record], 0); // a walk passes each level once: no record is met twice
-            met[entry->record] = 1;
-        }
+        for (uint32_t b = tree->nodes[walk.node].blocks; b; b = tree->blocks[b].next)
+            looked += meet_block(&tree->blocks[b], p, n, met);
     return looked;
 }
 
@@ -210,7 +223,7 @@ static void test_far_from_the_origin(void **state)
     Dice d = {6};
     for (int i = 0; i < 64; ++i) balls[i] = (Ball){dice_point(&d, far.lo, far.hi), i % 2 ? 1e-4f : 0.5f};
     SheenOctree *tree = tree_of(far, balls, 64);
-    assert_true(tree->n_nodes < 1000 && tree->n_entries < 2000); // a sphere overlaps 27 nodes of its size at most
+    assert_true(tree->n_nodes < 1000 && tree->n_blocks < 1000); // a sphere overlaps 27 nodes of its size at most
     unsigned char met[64];
     for (int i = 0; i < 64; ++i) {
         meet(tree, balls[i].center, 64, met);
@@ -223,15 +236,16 @@ static void test_bytes_grow(void **state)
 {
     (void)state;
     SheenOctree *tree = tree_of(unit, NULL, 0);
-    uint64_t before = sheen_octree_bytes(tree);
+    uint64_t empty = sheen_octree_bytes(tree), before = empty;
     assert_true(before > 0);
     for (uint32_t i = 0; i < 1000; ++i) {
         Vec3 p = v3(0.9f * sinf((float)i), 0.9f * cosf((float)i), 0.0f);
         assert_int_equal(sheen_octree_insert(tree, p, 0.01f, i), SHEEN_OK);
         uint64_t now = sheen_octree_bytes(tree);
-        assert_true(now >= before + sizeof(OctreeEntry)); // at least one entry each
+        assert_true(now >= before);
         before = now;
     }
+    assert_true(before >= empty + 1000 / SHEEN_OCTREE_LANES * sizeof(OctreeBlock)); // at least one lane each
     sheen_octree_destroy(&tree);
 }
 
