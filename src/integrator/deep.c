@@ -449,7 +449,7 @@ Rgb sheen_deep_answer(const SheenDeep *d, const DeepQuery *query)
     if (query->level < 0) return E;
     if (!sheen_memo_get(d->memo, query->cell.key, &E)) {
         if (!interpolate(d, query->cell.center, query->cell.n, query->cell.depth, query->level, &E)) E = uncovered;
-        sheen_memo_put(d->memo, query->cell.key, E);
+        E = sheen_memo_put(d->memo, query->cell.key, E);
     }
     if (E.r < 0.0f && !interpolate(d, query->p, query->n, 0.0f, query->level, &E)) E = d->mean[query->level];
     return E;

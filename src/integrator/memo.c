@@ -6,13 +6,14 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
-enum { SLOTS = 1 << 20, PROBES_MAX = 16, NORMAL_STEPS = 12 };
+enum { SLOTS = 1 << 20, PROBES_MAX = 16, NORMAL_STEPS = 12, HUGE_PAGE = 1 << 21 };
 
+// Four slots share a cache line.
 typedef struct Slot {
-    atomic_uint_least64_t key; // 0 is free
-    atomic_bool ready;         // the value is written
-    Rgb value;
+    atomic_uint_least64_t key;   // 0 is free
+    atomic_uint_least64_t value; // packed; 0 is not yet written
 } Slot;
 
 struct SheenMemo {
@@ -23,12 +24,15 @@ SheenStatus sheen_memo_create(SheenMemo **out)
 {
     *out = calloc(1, sizeof **out);
     if (!*out) return SHEEN_ERR_NOMEM;
-    (*out)->slots = calloc(SLOTS, sizeof(Slot));
+    (*out)->slots = aligned_alloc(HUGE_PAGE, SLOTS * sizeof(Slot));
     if (!(*out)->slots) {
         free(*out);
         *out = NULL;
         return SHEEN_ERR_NOMEM;
     }
+    // Look-ups are spread over the whole table: in small pages each would first wait for the page's address.
+    (void)madvise((*out)->slots, SLOTS * sizeof(Slot), MADV_HUGEPAGE);
+    memset((*out)->slots, 0, SLOTS * sizeof(Slot));
     return SHEEN_OK;
 }
 
@@ -40,30 +44,28 @@ void sheen_memo_destroy(SheenMemo **memo)
     *memo = NULL;
 }
 
-static uint64_t mix(uint64_t h, uint64_t x)
+// ---- cells ------------------------------------------------------------------------------------------------------
+
+// The normal on the surface of a cube of an even number of steps a side, so that the axes themselves are exact.
+static Vec3 quantise_normal(Vec3 n, uint64_t *code)
 {
-    h = (h ^ x ^ 0xd6e8feb86659fd93u) * 0x9e3779b97f4a7c15u;
-    return h ^ (h >> 32);
+    const float half = NORMAL_STEPS / 2;
+    float scale = half / maxf(fabsf(n.x), maxf(fabsf(n.y), fabsf(n.z)));
+    Vec3 q = v3(rintf(n.x * scale), rintf(n.y * scale), rintf(n.z * scale));
+    q = v3_add(q, v3(0.0f, 0.0f, 0.0f)); // a negative zero would turn the frame about the normal
+    *code = (uint64_t)((((int)q.x + NORMAL_STEPS) * 64 + (int)q.y + NORMAL_STEPS) * 64 + (int)q.z + NORMAL_STEPS);
+    return v3_normalize(q);
 }
 
-// The normal on the cube of directions: dominant axis and two steps on its face.
-static Vec3 quantise_normal(Vec3 n, uint32_t *code)
+// Four products that do not wait for each other, then two rounds that mix all bits into all others. Source of the
+// rounds: steele2014-splittable. A sum of products: with exclusive or, (x, y) and (-x, -y) would often meet.
+static uint64_t hash_cell(int64_t x, int64_t y, int64_t z, uint64_t rest)
 {
-    float a[3] = {n.x, n.y, n.z};
-    unsigned axis = fabsf(n.x) >= fabsf(n.y) ? (fabsf(n.x) >= fabsf(n.z) ? 0 : 2) : (fabsf(n.y) >= fabsf(n.z) ? 1 : 2);
-    float m = fabsf(a[axis]);
-    unsigned u_axis = (axis + 1) % 3, v_axis = (axis + 2) % 3;
-    // An odd number of steps keeps the axes themselves exact.
-    const int half = NORMAL_STEPS / 2;
-    int u = (int)lrintf(a[u_axis] / m * (float)half), v = (int)lrintf(a[v_axis] / m * (float)half);
-    *code =
-        (uint32_t)(((axis * 2 + (a[axis] < 0.0f)) * (2 * NORMAL_STEPS) + (unsigned)(u + half)) * (2 * NORMAL_STEPS) +
-                   (unsigned)(v + half));
-    float q[3];
-    q[axis] = a[axis] < 0.0f ? -1.0f : 1.0f;
-    q[u_axis] = (float)u / (float)half;
-    q[v_axis] = (float)v / (float)half;
-    return v3_normalize(v3(q[0], q[1], q[2]));
+    uint64_t h = (uint64_t)x * 0x9e3779b97f4a7c15u + (uint64_t)y * 0xd6e8feb86659fd93u;
+    h += (uint64_t)z * 0xa0761d6478bd642fu + rest * 0xe7037ed1a0b428dbu;
+    h = (h ^ h >> 30) * 0xbf58476d1ce4e5b9u;
+    h = (h ^ h >> 27) * 0x94d049bb133111ebu;
+    return h ^ h >> 31;
 }
 
 MemoCell sheen_memo_cell(Vec3 p, Vec3 n, float size, uint32_t tag)
@@ -76,7 +78,7 @@ MemoCell sheen_memo_cell(Vec3 p, Vec3 n, float size, uint32_t tag)
     memcpy(&side, &level, sizeof side);
     float inverse = 1.0f / side, depth = side * SHEEN_MEMO_DEPTH;
     MemoCell cell;
-    uint32_t code;
+    uint64_t code;
     cell.n = quantise_normal(n, &code);
     Frame f = frame_from_normal(cell.n);
     Vec3 l = frame_to_local(&f, p);
@@ -84,12 +86,45 @@ MemoCell sheen_memo_cell(Vec3 p, Vec3 n, float size, uint32_t tag)
     cell.center = frame_to_world(&f, v3((x + 0.5f) * side, (y + 0.5f) * side, (z + 0.5f) * depth));
     cell.depth = depth;
     // A 64-bit hash stands for all coordinates: two of a million cells share one in one of 10^7 pictures.
-    uint64_t h = mix(mix(mix(mix(0, (uint64_t)(int64_t)x), (uint64_t)(int64_t)y), (uint64_t)(int64_t)z), code);
-    h = mix(h, (uint64_t)level << 32 | tag);
-    h ^= h >> 32;
+    uint64_t h = hash_cell((int64_t)x, (int64_t)y, (int64_t)z, code << 42 ^ (uint64_t)tag << 8 ^ level >> 23);
     cell.key = h ? h : 1;
     return cell;
 }
+
+// ---- values -----------------------------------------------------------------------------------------------------
+
+static const uint64_t nothing = UINT64_MAX;
+
+// A channel without sign in 21 bits: the exponent and 13 bits of the mantissa, rounded.
+static uint64_t pack_channel(float x)
+{
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return (bits + 0x200u) >> 10 & 0x1fffffu;
+}
+
+static float unpack_channel(uint64_t packed)
+{
+    uint32_t bits = (uint32_t)(packed & 0x1fffffu) << 10;
+    float x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+// The topmost bit is always set.
+static uint64_t pack(Rgb v)
+{
+    if (!(v.r >= 0.0f && v.g >= 0.0f && v.b >= 0.0f)) return nothing;
+    return UINT64_C(1) << 63 | pack_channel(v.r) << 42 | pack_channel(v.g) << 21 | pack_channel(v.b);
+}
+
+static Rgb unpack(uint64_t packed)
+{
+    if (packed == nothing) return rgb_gray(-1.0f);
+    return rgb(unpack_channel(packed >> 42), unpack_channel(packed >> 21), unpack_channel(packed));
+}
+
+// ---- the table --------------------------------------------------------------------------------------------------
 
 void sheen_memo_prefetch(const SheenMemo *memo, uint64_t key)
 {
@@ -103,24 +138,23 @@ bool sheen_memo_get(const SheenMemo *memo, uint64_t key, Rgb *value)
         uint64_t k = atomic_load_explicit(&slot->key, memory_order_relaxed);
         if (k == 0) return false;
         if (k != key) continue;
-        if (!atomic_load_explicit(&slot->ready, memory_order_acquire)) return false;
-        *value = slot->value;
-        return true;
+        uint64_t packed = atomic_load_explicit(&slot->value, memory_order_relaxed);
+        *value = unpack(packed);
+        return packed != 0;
     }
     return false;
 }
 
-void sheen_memo_put(SheenMemo *memo, uint64_t key, Rgb value)
+Rgb sheen_memo_put(SheenMemo *memo, uint64_t key, Rgb value)
 {
+    uint64_t packed = pack(value);
     for (size_t probe = 0; probe < PROBES_MAX; ++probe) {
         Slot *slot = &memo->slots[(key + probe) & (SLOTS - 1)];
         uint64_t k = 0;
-        if (!atomic_compare_exchange_strong_explicit(&slot->key, &k, key, memory_order_relaxed, memory_order_relaxed)) {
-            if (k == key) return; // somebody else writes the same value
-            continue;
-        }
-        slot->value = value;
-        atomic_store_explicit(&slot->ready, true, memory_order_release);
-        return;
+        bool free_slot =
+            atomic_compare_exchange_strong_explicit(&slot->key, &k, key, memory_order_relaxed, memory_order_relaxed);
+        if (free_slot) atomic_store_explicit(&slot->value, packed, memory_order_relaxed);
+        if (free_slot || k == key) break; // somebody else writes the same value
     }
+    return unpack(packed);
 }

@@ -39,7 +39,9 @@ void sheen_memo_prefetch(const SheenMemo *memo, uint64_t key);
 /**
  * Remembers a value; drops it where the table is crowded. All callers must put the same value for a key:
  * then nothing depends on who was first. Thread-safe.
+ * @param value  channels not below zero; else it stands for "nothing there" and comes back as -1 in all of them
+ * @return the value as sheen_memo_get gives it, of 14 significant bits: use this one, whether or not it was dropped
  */
-void sheen_memo_put(SheenMemo *memo, uint64_t key, Rgb value);
+Rgb sheen_memo_put(SheenMemo *memo, uint64_t key, Rgb value);
 
 #endif

@@ -146,11 +146,40 @@ static uint64_t key_of(uint64_t i)
 }
 static Rgb value_of(uint64_t i)
 {
-    return rgb((float)i, (float)i + 0.5f, -(float)i);
+    return rgb((float)i, (float)i + 0.5f, 1.0f / (float)(i + 1));
 }
-static bool same(Rgb a, Rgb b)
+// Half of the last of 14 significant bits.
+static bool near(float kept, float value)
 {
-    return a.r == b.r && a.g == b.g && a.b == b.b;
+    return fabsf(kept - value) <= 0x1p-14f * value;
+}
+static bool same(Rgb kept, Rgb value)
+{
+    return near(kept.r, value.r) && near(kept.g, value.g) && near(kept.b, value.b);
+}
+
+static void test_values(void **state)
+{
+    (void)state;
+    SheenMemo *memo = NULL;
+    assert_int_equal(sheen_memo_create(&memo), SHEEN_OK);
+    static const float values[] = {0.0f, 1e-37f, 1e-3f, 0.3f, 1.0f, 0x1.fffffep0f, 7.7f, 1e5f, 3e38f};
+    Rgb kept, got;
+    for (uint64_t i = 0; i < sizeof values / sizeof *values; ++i) {
+        Rgb v = rgb(values[i], 2.0f, values[(i + 3) % 9]);
+        kept = sheen_memo_put(memo, i + 1, v);
+        assert_true(same(kept, v) && kept.g == 2.0f); // a power of two is exact
+        assert_true(sheen_memo_get(memo, i + 1, &got));
+        assert_memory_equal(&got, &kept, sizeof got); // who computed it goes on with the same as who reads it
+    }
+    static const Rgb none[] = {{-1, -1, -1}, {0, -1e-9f, 0}, {1, 2, NAN}};
+    for (uint64_t i = 0; i < 3; ++i) {
+        kept = sheen_memo_put(memo, 100 + i, none[i]);
+        assert_true(sheen_memo_get(memo, 100 + i, &got));
+        assert_true(kept.r == -1.0f && kept.g == -1.0f && kept.b == -1.0f);
+        assert_memory_equal(&got, &kept, sizeof got);
+    }
+    sheen_memo_destroy(&memo);
 }
 
 typedef struct Crowd {
@@ -229,6 +258,7 @@ int main(void)
         cmocka_unit_test(test_same_cell_for_near_points),
         cmocka_unit_test(test_different_cells),
         cmocka_unit_test(test_no_collisions),
+        cmocka_unit_test(test_values),
         cmocka_unit_test(test_threads),
         cmocka_unit_test(test_full_table),
     };
