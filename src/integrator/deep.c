@@ -155,7 +155,7 @@ static void gather_task(void *user, size_t item, unsigned worker)
     uint32_t record = t->first + (uint32_t)item;
     Hemisphere *h = &t->scratch[worker];
     sheen_hemisphere_trace(d->work, &d->points[record], point_key(d, record, 1), 1, h, &t->stats[worker]);
-    sheen_hemisphere_add_caustics(h);
+    sheen_hemisphere_add_caustics(d->work, &d->points[record], h, &t->stats[worker]);
     DeepCell *cells = cells_of(d, record);
     for (size_t i = 0; i < h->cells; ++i) {
         cells[i] = (DeepCell){.sky = h->L[i], .distance = h->distance[i]};

@@ -94,7 +94,7 @@ static void gather_light(const SheenFill *f, const DiffusePoint *p, uint32_t key
         sheen_hemisphere_direct(f->work, before - moved, 1, h, stats);
     }
     add_deep_light(f, h);
-    sheen_hemisphere_add_caustics(h);
+    sheen_hemisphere_add_caustics(f->work, p, h, stats);
 }
 
 // Radius from the estimate: harmonic mean, bounded by the gradient, then by the pixel. Source:

@@ -7,7 +7,10 @@
 #include <string.h>
 
 // Keys of the random numbers of a gather, so that no two uses share one.
-enum { KEY_STRATA = 1, KEY_LIGHT = 2, KEY_EXTEND = 3, KEY_SPECULAR = 4 };
+enum { KEY_STRATA = 1, KEY_LIGHT = 2, KEY_EXTEND = 3, KEY_OWN = 5, KEY_CAUSTIC = 6, KEY_SPECULAR = 7 };
+
+// Rays of a stratum that find lamps through mirrors and glass; at most as many in all as there are strata.
+enum { CAUSTIC_RAYS = 8 };
 
 void sheen_hemisphere_free(Hemisphere *h)
 {
@@ -16,6 +19,7 @@ void sheen_hemisphere_free(Hemisphere *h)
     free(h->caustic);
     free(h->specular);
     free(h->mirrored);
+    free(h->through);
     free(h->sorted);
     free(h->distance);
     free(h->vertices);
@@ -39,6 +43,7 @@ bool sheen_hemisphere_reserve(Hemisphere *h, SheenStrata strata)
         h->caustic = malloc(n * sizeof *h->caustic);
         h->specular = malloc(n);
         h->mirrored = malloc(n * sizeof *h->mirrored);
+        h->through = malloc(n * sizeof *h->through);
         h->sorted = malloc(n * sizeof *h->sorted);
         h->distance = malloc(n * sizeof *h->distance);
         h->vertices = malloc(n * sizeof *h->vertices);
@@ -48,9 +53,9 @@ bool sheen_hemisphere_reserve(Hemisphere *h, SheenStrata strata)
         h->points = malloc(n * sizeof *h->points);
         h->numbers = malloc(n * sizeof *h->numbers);
         h->irradiance = malloc(n * sizeof *h->irradiance);
-        if (!h->directions || !h->L || !h->caustic || !h->specular || !h->mirrored || !h->sorted || !h->distance ||
-            !h->vertices || !h->moved || !h->rays || !h->hits || !h->points || !h->numbers || !h->irradiance ||
-            !sheen_direct_reserve(&h->direct, n)) {
+        if (!h->directions || !h->L || !h->caustic || !h->specular || !h->mirrored || !h->through || !h->sorted ||
+            !h->distance || !h->vertices || !h->moved || !h->rays || !h->hits || !h->points || !h->numbers ||
+            !h->irradiance || !sheen_direct_reserve(&h->direct, n)) {
             sheen_hemisphere_free(h);
             return false;
         }
@@ -68,6 +73,15 @@ static Ray leave(const DiffusePoint *p, Vec3 d)
     return (Ray){p->origin, INFINITY, d};
 }
 
+// The part of the light at the end of a way through mirrors or glass that no light sample and no soft sky stands for.
+static Rgb caustic_of(const SheenWork *work, const Followed *f)
+{
+    if (f->specular == 0) return rgb_gray(0.0f);
+    if (!f->escaped) return rgb_mul(f->throughput, f->emitted);
+    Rgb all = sheen_environment(work->scene, f->direction), soft = sheen_environment_soft(work->lights, f->direction);
+    return rgb_mul(f->throughput, rgb_sub(all, soft));
+}
+
 // What one ray of the gather, or of an extension of one of its vertices, ended on.
 // @param weight  radiance in the cell per radiance along the ray
 static void receive(const SheenWork *work, const Followed *f, Rgb weight, uint32_t cell, unsigned bounces,
@@ -76,14 +90,8 @@ static void receive(const SheenWork *work, const Followed *f, Rgb weight, uint32
     Rgb through = rgb_mul(weight, f->throughput);
     if (f->escaped)
         h->L[cell] = rgb_add(h->L[cell], rgb_mul(through, sheen_environment_soft(work->lights, f->direction)));
-    if (f->specular > 0) {
-        if (f->scatters) h->specular[cell] = 1; // the soft sky behind a pane is as good as without it
-        Rgb hard = f->emitted;
-        if (f->escaped)
-            hard = rgb_sub(sheen_environment(work->scene, f->direction),
-                           sheen_environment_soft(work->lights, f->direction));
-        h->caustic[cell] = rgb_add(h->caustic[cell], rgb_mul(through, hard));
-    }
+    if (f->specular > 0 && f->scatters) h->specular[cell] = 1; // the soft sky behind a pane is as good as without it
+    h->caustic[cell] = rgb_add(h->caustic[cell], rgb_mul(weight, caustic_of(work, f)));
     if (!f->scatters || bounces == 0) return;
     h->vertices[h->n_vertices++] = (GatherVertex){
         f->point, rgb_scale(rgb_mul(through, f->point.reflectance), SHEEN_INV_PI), cell, f->distance, bounces};
@@ -100,6 +108,37 @@ void sheen_hemisphere_directions(uint32_t key, Hemisphere *h)
         }
 }
 
+// Asks the strata whose ray came to a mirror or a pane for lamps again, several times: a lamp seen there is small and
+// bright, and one ray in a stratum finds it seldom. A stratum's caustic becomes the mean over those of its rays that
+// came to one. Given that the first did, this has the expectation of the first alone, whatever share of the stratum the
+// mirror fills.
+static void resample_caustics(const SheenWork *work, const DiffusePoint *point, const uint32_t cells[], size_t n,
+                              Hemisphere *h, SheenStats *stats)
+{
+    h->caustic_rays = n == 0 ? 1 : (uint32_t)(h->cells / n < CAUSTIC_RAYS ? h->cells / n : CAUSTIC_RAYS);
+    uint32_t more = h->caustic_rays - 1, key = hash_combine(h->key, KEY_CAUSTIC);
+    for (size_t i = 0; i < n * more; ++i) {
+        uint32_t cell = cells[i / more], shift = hash_combine(key, cell), k = (uint32_t)(i % more);
+        Vec2 u = v2(hash_to_unit(shift + k * 0xc13fa9a9u), hash_to_unit(hash_u32(shift) + k * 0x91e10da6u));
+        Vec3 d = sheen_strata_direction(h->strata, cell % h->strata.rings, cell / h->strata.rings, u);
+        h->rays[i] = leave(point, frame_to_world(&h->frame, d));
+    }
+    sheen_accel_intersect_many(work->accel, SHEEN_COHERENT, n * more, h->rays, h->hits);
+    stats->rays_gather += n * more;
+    for (size_t c = 0; c < n && more; ++c) {
+        Rgb sum = h->caustic[cells[c]];
+        float found = 1.0f;
+        for (size_t i = c * more; i < (c + 1) * more; ++i) {
+            SheenSampler sampler = sampler_make(key, (uint32_t)i);
+            Followed f;
+            sheen_follow(work, &h->rays[i], &h->hits[i], &sampler, &stats->rays_specular, &f);
+            sum = rgb_add(sum, caustic_of(work, &f));
+            found += f.specular > 0 ? 1.0f : 0.0f;
+        }
+        h->caustic[cells[c]] = rgb_scale(sum, 1.0f / found);
+    }
+}
+
 void sheen_hemisphere_trace(const SheenWork *work, const DiffusePoint *point, uint32_t key, unsigned bounces,
                             Hemisphere *h, SheenStats *stats)
 {
@@ -111,6 +150,7 @@ void sheen_hemisphere_trace(const SheenWork *work, const DiffusePoint *point, ui
     for (uint32_t i = 0; i < h->cells; ++i) h->rays[i] = leave(point, frame_to_world(&h->frame, h->directions[i]));
     sheen_accel_intersect_many(work->accel, SHEEN_COHERENT, h->cells, h->rays, h->hits);
     stats->rays_gather += h->cells;
+    size_t n_through = 0;
     for (uint32_t i = 0; i < h->cells; ++i) {
         h->L[i] = h->caustic[i] = rgb_gray(0.0f);
         h->specular[i] = 0;
@@ -119,7 +159,11 @@ void sheen_hemisphere_trace(const SheenWork *work, const DiffusePoint *point, ui
         sheen_follow(work, &h->rays[i], &h->hits[i], &sampler, &stats->rays_specular, &f);
         h->distance[i] = maxf(f.distance, 1e-20f);
         receive(work, &f, rgb_gray(1.0f), i, bounces, h);
+        if (f.specular > 0) h->through[n_through++] = i;
     }
+    // Without a light to ask there is no lamp and no hard part of the sky.
+    if (sheen_lights_count(work->lights) == 0) n_through = 0;
+    resample_caustics(work, point, h->through, n_through, h, stats);
 }
 
 size_t sheen_hemisphere_extend(const SheenWork *work, float near, Hemisphere *h, SheenStats *stats)
@@ -193,11 +237,26 @@ static float ranked(Hemisphere *h, const Rgb values[], size_t rank)
     return h->sorted[rank];
 }
 
-// Adds values to L, each cut to at most `share` of the whole; but never below what one cell in 64 sees, which is light
-// and not noise: a room may have no other.
-static void add_cut(Hemisphere *h, const Rgb values[], double share)
+// Irradiance at the gather's own point straight from lamps: noise is seen beside it too.
+static Rgb own_direct(const SheenWork *work, const DiffusePoint *point, Hemisphere *h, SheenStats *stats)
 {
-    double rest = 0.0, cut = 0.0;
+    const size_t most = 16, n = h->cells < most ? h->cells : most;
+    for (size_t i = 0; i < n; ++i) {
+        h->points[i] = *point;
+        h->irradiance[i] = rgb_gray(0.0f);
+        h->numbers[i] = light_numbers(h->key, KEY_OWN, (uint32_t)i);
+    }
+    stats->rays_shadow += sheen_direct_add(work, n, h->points, h->numbers, 1.0f / (float)n, &h->direct, h->irradiance);
+    Rgb E = rgb_gray(0.0f);
+    for (size_t i = 0; i < n; ++i) E = rgb_add(E, h->irradiance[i]);
+    return E;
+}
+
+// Adds values to L, each cut to at most `share` of the whole, `beside` included; but never below what one cell in 64
+// sees, which is light and not noise: a room may have no other.
+static void add_cut(Hemisphere *h, const Rgb values[], double share, double beside)
+{
+    double rest = beside, cut = 0.0;
     for (size_t i = 0; i < h->cells; ++i) {
         rest += (double)rgb_max(h->L[i]);
         cut = fmax(cut, (double)rgb_max(values[i]));
@@ -216,13 +275,19 @@ static void add_cut(Hemisphere *h, const Rgb values[], double share)
     }
 }
 
-void sheen_hemisphere_add_caustics(Hemisphere *h)
+void sheen_hemisphere_add_caustics(const SheenWork *work, const DiffusePoint *point, Hemisphere *h, SheenStats *stats)
 {
-    const double mirrored_most = 8.0, caustic_most = 2.0; // times the mean
+    const double mirrored_most = 8.0, caustic_most = 2.0; // times the mean, a ray
+    bool caustic = false, mirrored = false;
     for (size_t i = 0; i < h->cells; ++i) {
         h->mirrored[i] = h->specular[i] ? h->L[i] : rgb_gray(0.0f);
         if (h->specular[i]) h->L[i] = rgb_gray(0.0f);
+        mirrored = mirrored || h->specular[i];
+        caustic = caustic || !rgb_is_black(h->caustic[i]);
     }
-    add_cut(h, h->mirrored, mirrored_most / (double)h->cells);
-    add_cut(h, h->caustic, caustic_most / (double)h->cells);
+    if (!mirrored && !caustic) return;
+    double cells = (double)h->cells;
+    double beside = (double)(rgb_max(own_direct(work, point, h, stats)) * SHEEN_INV_PI) * cells;
+    add_cut(h, h->mirrored, mirrored_most / cells, beside);
+    add_cut(h, h->caustic, caustic_most * (double)h->caustic_rays / cells, beside);
 }

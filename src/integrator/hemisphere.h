@@ -28,8 +28,10 @@ typedef struct Hemisphere {
     GatherVertex *vertices;
     size_t n_vertices;
     // scratch
-    Rgb *mirrored; // [cells]
-    float *sorted; // [cells]
+    Rgb *mirrored;         // [cells]
+    uint32_t *through;     // cells whose ray came to a mirror or a pane
+    uint32_t caustic_rays; // rays in each of them
+    float *sorted;         // [cells]
     GatherVertex *moved;
     Ray *rays;
     Hit *hits;
@@ -67,11 +69,11 @@ size_t sheen_hemisphere_extend(const SheenWork *work, float near, Hemisphere *h,
 void sheen_hemisphere_direct(const SheenWork *work, size_t first, uint32_t samples, Hemisphere *h, SheenStats *stats);
 
 /**
- * Ends a gather: adds the caustics to L. Lamps seen through mirrors and glass are cut to twice the mean of the cells,
- * and surfaces seen so to 8 times the mean: what a single ray finds there is noise that a cache would spread over a
- * wide splotch. What one cell in 64 sees is not cut, nor the soft sky. Energy that is cut is lost: small lamps inside
- * glass are too weak.
+ * Ends a gather: adds the caustics to L. Of lamps seen through mirrors and glass a ray brings at most twice the mean of
+ * the cells, the light straight from lamps on `point` included, and surfaces seen so are cut to 8 times the mean: what
+ * a single ray finds there is noise that a cache would spread over a wide splotch. What one cell in 64 sees is not cut,
+ * nor the soft sky. Energy that is cut is lost: small lamps inside glass are too weak.
  */
-void sheen_hemisphere_add_caustics(Hemisphere *h);
+void sheen_hemisphere_add_caustics(const SheenWork *work, const DiffusePoint *point, Hemisphere *h, SheenStats *stats);
 
 #endif

@@ -80,9 +80,17 @@ static SheenStatus create_deep(const SheenWork *work, const ShadingPoint points[
     return status;
 }
 
-static bool has_sky(const SheenWork *work)
+// Whether gathers see light that light samples leave out, so that there are records even without a bounce: the soft
+// sky, and lamps in mirrors and behind glass.
+static bool gathers_see_light(const SheenScene *scene)
 {
-    return work->scene->environment != SHEEN_NONE;
+    if (scene->environment != SHEEN_NONE) return true;
+    bool lamps = false, delta = false;
+    for (uint32_t i = 0; i < scene->n_shapes; ++i) {
+        lamps = lamps || scene->shapes[i].light != SHEEN_NONE;
+        delta = delta || sheen_bsdf_is_delta(&(Bsdf){.material = &scene->materials[scene->shapes[i].material]});
+    }
+    return lamps && delta;
 }
 
 static SheenStatus fill_cache(const SheenWork *work, SheenIrradianceCache *cache, SheenDeep **deep, SheenFill **fill,
@@ -95,9 +103,9 @@ static SheenStatus fill_cache(const SheenWork *work, SheenIrradianceCache *cache
     SheenStatus status = collect_first_points(work, stats, &points, &n);
     double t1 = sheen_clock_seconds();
     stats->time_visibility += t1 - t0;
-    // One bounce of direct light alone needs no deep records: the light at a gather's hits is direct.
+    // Where light samples find all direct light, one bounce needs no deep records.
     unsigned bounces = work->options.bounces;
-    bool deeper = bounces > 1 || (bounces == 1 && has_sky(work));
+    bool deeper = bounces > 1 || (bounces == 1 && gathers_see_light(work->scene));
     if (status == SHEEN_OK && deeper && work->options.secondary == SHEEN_SECONDARY_CACHE)
         status = create_deep(work, points, n, stats, deep);
     if (status == SHEEN_OK) status = sheen_fill_create(work, *deep, cache, fill);
@@ -113,7 +121,7 @@ SheenStatus sheen_irradiance_render(const SheenWork *work, SheenFilm *film, Shee
     SheenDeep *deep = NULL;
     SheenFill *fill = NULL;
     Uncovered uncovered = {0};
-    bool indirect = work->options.bounces > 0 || has_sky(work);
+    bool indirect = work->options.bounces > 0 || gathers_see_light(work->scene);
     SheenStatus status = SHEEN_OK;
     if (indirect) {
         status = sheen_irradiance_cache_create(work->options.accuracy, work->options.neighbor_clamping,

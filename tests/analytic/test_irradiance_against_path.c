@@ -63,18 +63,18 @@ static void test_room_with_a_mirror(void **state)
     stage_free(&stage);
 }
 
-// A lamp that the ball mirrors makes caustics. Of those the cache takes what is not noise, and direct light alone has
-// none: here a picture of paths is 4.3 % brighter without bounces, and never darker.
-static void test_caustics_are_cut_only(void **state)
+// A lamp that the ball mirrors makes caustics, which are direct light. The cache takes what is not noise of them: with
+// so few rays it lacks 1.9, 1.3 and 1.0 % of the picture's light, and 4.5 % when it takes none.
+static void test_a_lamp_in_the_mirror(void **state)
 {
     (void)state;
     Stage stage = stage_end(kit_room(1.0f, 0.7f, SHEEN_MATERIAL_CONDUCTOR, true), 2);
-    for (uint32_t bounces = 0; bounces <= 2; bounces += 2) {
+    for (uint32_t bounces = 0; bounces <= 2; ++bounces) {
         SheenRenderSettings s = sharp_settings(bounces);
         SheenFilm *film = stage_render(&stage, &s, NULL), *paths = stage_reference(&stage, &s, 128, 1);
         double off = film_mean(film) / film_mean(paths) - 1.0;
-        show("caustics, %u bounces: mean off by %.2g\n", bounces, off);
-        assert_true(off > -0.06 && off < MEAN);
+        show("a lamp in the mirror, %u bounces: mean off by %.2g\n", bounces, off);
+        assert_true(off > -0.025 && off < MEAN);
         sheen_film_destroy(&film);
         sheen_film_destroy(&paths);
     }
@@ -251,7 +251,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_diffuse_room),
         cmocka_unit_test(test_room_with_a_mirror),
-        cmocka_unit_test(test_caustics_are_cut_only),
+        cmocka_unit_test(test_a_lamp_in_the_mirror),
         cmocka_unit_test(test_secondary_path_and_cache_agree),
         cmocka_unit_test(test_smooth_ball_under_a_lamp),
         cmocka_unit_test(test_each_light_alone),

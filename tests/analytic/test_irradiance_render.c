@@ -62,7 +62,7 @@ static void test_same_picture_at_any_number_of_threads(void **state)
             s.options.neighbor_clamping = cases[i].clamping;
             SheenStats stats;
             SheenFilm *film = stage_render(&stage, &s, &stats);
-            assert_true((stats.records > 0) == (cases[i].bounces > 0));
+            assert_true(stats.records > 0); // without a bounce they hold the lamp in the mirror
             if (t == 0) {
                 first[i] = film;
                 first_stats[i] = stats;
