@@ -1,38 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrator/follow.h"
 
-bool sheen_diffuse_point(const SheenScene *scene, const SurfacePoint *s, Vec3 wo, DiffusePoint *out)
+bool sheen_diffuse_point(const SurfacePoint *s, const Bsdf *bsdf, Vec3 wo, DiffusePoint *out)
 {
-    Bsdf bsdf = sheen_bsdf_at(scene, s);
     bool front = v3_dot(wo, s->ng) >= 0.0f;
-    if (!front && !bsdf.material->two_sided) return false;
-    if (rgb_is_black(bsdf.reflectance)) return false;
+    if (!front && !bsdf->material->two_sided) return false;
+    if (rgb_is_black(bsdf->reflectance)) return false;
     Vec3 ng = front ? s->ng : v3_neg(s->ng), n = front ? s->ns : v3_neg(s->ns);
-    *out = (DiffusePoint){s->p, sheen_surface_leave(s, ng), ng, n, bsdf.reflectance};
+    *out = (DiffusePoint){s->p, sheen_surface_leave(s, ng), ng, n, bsdf->reflectance};
     return true;
 }
 
-void sheen_follow(const SheenWork *work, const Ray *first, const Hit *first_hit, SheenSampler *sampler,
-                  uint64_t *specular_rays, Followed *out)
+void sheen_follow(const SheenWork *work, const Ray *ray, const Hit *hit, SheenSampler *sampler, uint64_t *specular_rays,
+                  Followed *out)
 {
-    Ray ray = *first;
-    Hit hit = *first_hit;
+    Ray next;
+    Hit next_hit;
     *out = (Followed){.throughput = rgb_gray(1.0f)};
     for (;;) {
-        out->direction = ray.d;
-        if (hit.shape == SHEEN_NONE) {
+        out->direction = ray->d;
+        if (hit->shape == SHEEN_NONE) {
             out->escaped = true;
             out->distance = INFINITY;
             return;
         }
         SurfacePoint s;
-        sheen_surface_from_hit(work->scene, &ray, &hit, &s);
-        Vec3 wo = v3_neg(ray.d);
-        out->distance += hit.t;
+        sheen_surface_from_hit(work->scene, ray, hit, &s);
+        Vec3 wo = v3_neg(ray->d);
+        out->distance += hit->t;
         out->emitted = sheen_emitted(work->scene, &s, wo);
         Bsdf bsdf = sheen_bsdf_at(work->scene, &s);
         if (!sheen_bsdf_is_delta(&bsdf)) {
-            out->scatters = sheen_diffuse_point(work->scene, &s, wo, &out->point);
+            out->scatters = sheen_diffuse_point(&s, &bsdf, wo, &out->point);
             return;
         }
         if (out->specular++ == SHEEN_SPECULAR_MAX) return;
@@ -42,8 +41,10 @@ void sheen_follow(const SheenWork *work, const Ray *first, const Hit *first_hit,
         if (!sheen_bsdf_sample(&bsdf, frame_to_local(&frame, wo), lobe, v2(0.5f, 0.5f), &sample)) return;
         out->throughput = rgb_mul(out->throughput, sample.weight);
         if (rgb_is_black(out->throughput)) return;
-        ray = sheen_surface_ray(&s, frame_to_world(&frame, sample.wi_l));
-        sheen_accel_intersect(work->accel, &ray, &hit);
+        next = sheen_surface_ray(&s, frame_to_world(&frame, sample.wi_l));
+        sheen_accel_intersect(work->accel, &next, &next_hit);
+        ray = &next;
+        hit = &next_hit;
         ++*specular_rays;
     }
 }

@@ -19,7 +19,7 @@ typedef struct DiffusePoint {
 } DiffusePoint;
 
 /** The same for a surface seen along wo (unit, toward the viewer). @return false when it is black from there. */
-bool sheen_diffuse_point(const SheenScene *scene, const SurfacePoint *s, Vec3 wo, DiffusePoint *out);
+bool sheen_diffuse_point(const SurfacePoint *s, const Bsdf *bsdf, Vec3 wo, DiffusePoint *out);
 
 /** Where a ray ended. */
 typedef struct Followed {

@@ -162,7 +162,7 @@ static bool arrive(const SheenWork *work, const SheenEye *eye, EyeRay *r, const 
     }
     if (sheen_bsdf_is_delta(&bsdf)) return split(work, r, &s, &bsdf, next, v);
     ShadingPoint p = {.throughput = r->throughput, .pixel = r->pixel, .sample = r->sample, .branch = r->branch};
-    if (!sheen_diffuse_point(work->scene, &s, wo, &p.point)) return true;
+    if (!sheen_diffuse_point(&s, &bsdf, wo, &p.point)) return true;
     p.footprint = r->length * eye->pixel;
     return push_point(v, &p);
 }

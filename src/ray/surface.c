@@ -37,9 +37,9 @@ static Magnitude surface_of_mesh(const SheenMesh *mesh, const Hit *hit, SurfaceP
     Vec3 p0 = mesh->p[tri[0]], e1 = v3_sub(mesh->p[tri[1]], p0), e2 = v3_sub(mesh->p[tri[2]], p0);
     Vec3 cross = v3_cross(e1, e2);
     float u = hit->u, v = hit->v, w = 1.0f - u - v;
+    float length = v3_length(cross), inverse = length > 0.0f ? 1.0f / length : 1.0f;
     s->p = v3_mad(v3_mad(p0, u, e1), v, e2);
-    s->ng = v3_normalize(cross);
-    s->ns = s->ng;
+    s->ng = s->ns = v3_scale(cross, inverse);
     if (mesh->n) {
         Vec3 n = v3_mad(v3_mad(v3_scale(mesh->n[tri[0]], w), u, mesh->n[tri[1]]), v, mesh->n[tri[2]]);
         if (v3_length2(n) > 1e-12f) s->ns = v3_normalize(n);
@@ -51,7 +51,7 @@ static Magnitude surface_of_mesh(const SheenMesh *mesh, const Hit *hit, SurfaceP
                    w * t[tri[0]].y + u * t[tri[1]].y + v * t[tri[2]].y);
     }
     // The normal of a sliver is a difference of products that nearly cancel.
-    float cancelled = minf(sqrtf(v3_length2(e1) * (v3_length2(e2) / v3_length2(cross))), 1024.0f);
+    float cancelled = minf(v3_length(e1) * inverse * v3_length(e2), 1024.0f);
     return (Magnitude){v3_abs(s->p), v3_scale(v3_add(v3_abs(e1), v3_abs(e2)), cancelled)};
 }
 
