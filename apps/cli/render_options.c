@@ -104,8 +104,9 @@ const Option render_options[] = {
     {.kind = OPTION_COUNT,
      .name = "light-samples",
      .argument = "N",
-     .meaning = "Light samples for each shading point.",
-     .standard = "one for each light of the scene, up to 4; 1 with --integrator path",
+     .meaning = "Light samples for each shading point. Up to 4 lights share them evenly, of more they are chosen.",
+     .standard =
+         "2 for each light where there are 2 to 4 (1 for those without size), else 1 or 4; 1 with --integrator path",
      .example = "--light-samples 4",
      .recorded = true,
      RANGE(1, 4096),

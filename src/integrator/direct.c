@@ -29,9 +29,9 @@ void sheen_direct_free(DirectScratch *s)
 // Unshadowed irradiance of one sample and its shadow ray. @return false when there is nothing to ask.
 static bool sample_light(const SheenWork *work, const DiffusePoint *point, LightNumbers numbers, Rgb *E, Ray *shadow)
 {
-    uint32_t light;
-    float u = numbers.choice;
-    float probability = sheen_lights_choose(work->lights, point->p, point->n, &u, &light);
+    uint32_t light = numbers.light;
+    float u = numbers.choice, probability = 1.0f;
+    if (light == SHEEN_NONE) probability = sheen_lights_choose(work->lights, point->p, point->n, &u, &light);
     if (!(probability > 0.0f)) return false;
     LightSample sample;
     if (!sheen_light_sample(work->lights, light, point->p, numbers.place, &sample)) return false;

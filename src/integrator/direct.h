@@ -5,9 +5,10 @@
 
 #include "integrator/follow.h"
 
-/** Random numbers of one light sample: which light, and where on it. */
+/** Which light a sample asks, and its random numbers. */
 typedef struct LightNumbers {
-    float choice;
+    uint32_t light; // SHEEN_NONE: one is chosen
+    float choice;   // for that
     Vec2 place;
 } LightNumbers;
 
@@ -24,8 +25,8 @@ bool sheen_direct_reserve(DirectScratch *scratch, size_t n);
 void sheen_direct_free(DirectScratch *scratch);
 
 /**
- * Adds scale times one sample of the direct irradiance at each point: one light is chosen by its unshadowed
- * contribution there, and asked.
+ * Adds scale times one sample of the direct irradiance at each point: the light that is named, or one chosen by
+ * its unshadowed contribution there, is asked.
  * @param points   [n]; the sample is over the hemisphere about the shading normal, above the geometric surface
  * @param numbers  [n]
  * @param E        [n] W/m^2, added to

@@ -203,7 +203,8 @@ size_t sheen_hemisphere_extend(const SheenWork *work, float near, Hemisphere *h,
 static LightNumbers light_numbers(uint32_t key, uint32_t use, uint32_t index)
 {
     uint32_t shift = hash_combine(key, KEY_LIGHT + (use << 8)), x = shift, y = hash_u32(shift), z = hash_u32(y);
-    return (LightNumbers){hash_to_unit(x + index * 0xd1b54a33u),
+    return (LightNumbers){SHEEN_NONE,
+                          hash_to_unit(x + index * 0xd1b54a33u),
                           {hash_to_unit(y + index * 0xabc98388u), hash_to_unit(z + index * 0x8cb92ba7u)}};
 }
 

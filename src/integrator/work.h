@@ -17,7 +17,7 @@ typedef enum SheenGradients { SHEEN_GRADIENTS_STRATIFIED, SHEEN_GRADIENTS_NONE }
 /** Options of a render; sheen_options_default gives the documented defaults. */
 typedef struct SheenOptions {
     uint32_t spp;           // samples per pixel
-    uint32_t light_samples; // for each shading point; 0: as many as lights, at most 4, and 1 for `path`
+    uint32_t light_samples; // for each shading point; 0: 1 of one light, 2 of each of up to 4, else 4; 1 for `path`
     uint32_t bounces;       // indirect bounces; 0 is direct light only
     double time_limit;      // seconds, path only; 0 for none
     float accuracy;         // a: a record is used where w > 1/a

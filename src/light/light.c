@@ -141,6 +141,12 @@ uint32_t sheen_lights_count(const SheenLights *lights)
     return lights->n;
 }
 
+bool sheen_light_is_delta(const SheenLights *lights, uint32_t light)
+{
+    SourceKind kind = lights->sources[light].kind;
+    return kind == SOURCE_POINT || kind == SOURCE_SPOT || kind == SOURCE_DIRECTIONAL;
+}
+
 uint32_t sheen_lights_of_shape(const SheenLights *lights, uint32_t shape)
 {
     uint32_t light = lights->shapes[shape].light;

@@ -55,6 +55,9 @@ float sheen_lights_choose(const SheenLights *lights, Vec3 p, Vec3 n, float *u, u
 /** @return the probability with which sheen_lights_choose picks `light` at (p, n). */
 float sheen_lights_choose_probability(const SheenLights *lights, Vec3 p, Vec3 n, uint32_t light);
 
+/** @return whether all samples of a light at one point are alike: point, spot, directional. */
+bool sheen_light_is_delta(const SheenLights *lights, uint32_t light);
+
 /** Samples a light as seen from p, by solid angle where a closed form exists. @return false when nothing arrives. */
 bool sheen_light_sample(const SheenLights *lights, uint32_t light, Vec3 p, Vec2 u, LightSample *out);
 
