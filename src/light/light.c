@@ -173,17 +173,13 @@ float sheen_lights_choose_probability(const SheenLights *lights, Vec3 p, Vec3 n,
 static bool sample_area(const Source *s, Vec3 p, Vec2 u, LightSample *out)
 {
     SourcePoint point;
-    if (!sheen_source_sample_area(s, p, u, &point) || !(point.pdf > 0.0f)) return false;
-    Vec3 d = v3_sub(point.q, p);
-    float distance = v3_length(d);
-    Vec3 wi = v3_scale(d, 1.0f / distance);
-    if (!(v3_dot(wi, point.n) < 0.0f)) return false;
-    float clearance = sheen_surface_clearance(point.q, point.n, s->radius + distance);
-    *out = (LightSample){.wi = wi,
+    if (!sheen_source_sample_area(s, p, u, &point)) return false;
+    float clearance = sheen_surface_clearance(point.q, point.n, s->radius + point.distance);
+    *out = (LightSample){.wi = point.wi,
                          .target = v3_mad(point.q, clearance, point.n),
-                         .radiance = rgb_scale(s->light->radiance, 1.0f / point.pdf),
-                         .pdf = point.pdf};
-    return true;
+                         .radiance = rgb_scale(s->light->radiance, point.solid_angle),
+                         .pdf = 1.0f / point.solid_angle};
+    return out->pdf > 0.0f && isfinite(out->pdf);
 }
 
 // Point and spot: the inverse square of the distance is a part of what arrives, not of a density.

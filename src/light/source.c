@@ -6,6 +6,15 @@
 // How far a quadrilateral may be from a rectangle, as a share of its edges.
 #define RECTANGLE_TOLERANCE 1e-4f
 
+// Looks from p at the point that was chosen. @return the cosine at the light, above 0 in front of it
+static inline float look(Vec3 p, SourcePoint *out)
+{
+    Vec3 d = v3_sub(out->q, p);
+    out->distance = v3_length(d);
+    out->wi = v3_scale(d, 1.0f / out->distance);
+    return -v3_dot(out->wi, out->n);
+}
+
 // ---- meshes -----------------------------------------------------------------------------------------------------
 
 static void triangle_vertices(const SheenMesh *mesh, uint32_t i, Vec3 v[3])
@@ -122,12 +131,13 @@ static bool mesh_sample(const Source *s, Vec3 p, Vec2 u, SourcePoint *out)
     Vec3 v[3];
     triangle_vertices(&s->shape->mesh, i, v);
     Vec2 b;
-    if (!sheen_triangle_sample(v, p, u, &b, &out->pdf)) return false;
+    float pdf;
+    if (!sheen_triangle_sample(v, p, u, &b, &pdf)) return false;
     Vec3 e1 = v3_sub(v[1], v[0]), e2 = v3_sub(v[2], v[0]);
     out->q = v3_mad(v3_mad(v[0], b.x, e1), b.y, e2);
     out->n = v3_normalize(v3_cross(e1, e2));
-    out->pdf *= (float)(s->triangle_cdf[i + 1] - s->triangle_cdf[i]);
-    return true;
+    out->solid_angle = 1.0f / (pdf * (float)(s->triangle_cdf[i + 1] - s->triangle_cdf[i]));
+    return look(p, out) > 0.0f;
 }
 
 static float mesh_pdf(const Source *s, Vec3 p, Vec3 q, uint32_t triangle)
@@ -140,18 +150,26 @@ static float mesh_pdf(const Source *s, Vec3 p, Vec3 q, uint32_t triangle)
 
 // ---- rectangle and disk -----------------------------------------------------------------------------------------
 
-static Vec3 rectangle_point(const SheenRectangle *r, Vec2 st)
+// Inline in both callers: vectors that are passed by value go through memory, and wait for it.
+// @param st  coordinates of the point, [0, 1]^2
+static inline __attribute__((always_inline)) bool rectangle_point(const SheenRectangle *r, Vec3 p, Vec2 u, Vec2 *st,
+                                                                  SourcePoint *out)
 {
-    return v3_mad(v3_mad(r->corner, st.x, r->ex), st.y, r->ey);
+    bool far = sheen_rectangle_is_far(r, p);
+    *st = u;
+    if (v3_dot(v3_sub(p, r->center), r->n) <= 0.0f) return false;
+    if (!far && !sheen_rectangle_sample(r, p, u, st, &out->solid_angle)) return false;
+    out->q = v3_mad(v3_mad(r->corner, st->x, r->ex), st->y, r->ey);
+    out->n = r->n;
+    float cosine = look(p, out);
+    if (far) out->solid_angle = r->area * cosine / sqrf(out->distance);
+    return cosine > 0.0f;
 }
 
 static bool rectangle_sample(const Source *s, Vec3 p, Vec2 u, SourcePoint *out)
 {
     Vec2 st;
-    if (!sheen_rectangle_sample(&s->rectangle, p, u, &st, &out->pdf)) return false;
-    out->q = rectangle_point(&s->rectangle, st);
-    out->n = s->rectangle.n;
-    return true;
+    return rectangle_point(&s->rectangle, p, u, &st, out);
 }
 
 // Half the bounding rectangle's edges lie along du and across it.
@@ -179,12 +197,9 @@ static void disk_init(Source *s)
 static bool disk_sample(const Source *s, Vec3 p, Vec2 u, SourcePoint *out)
 {
     Vec2 st;
-    if (!sheen_rectangle_sample(&s->rectangle, p, u, &st, &out->pdf)) return false;
+    if (!rectangle_point(&s->rectangle, p, u, &st, out)) return false;
     float x = (st.x - 0.5f) * (float)s->rectangle.lx, y = (st.y - 0.5f) * (float)s->rectangle.ly;
-    if (!(sqrf((x - s->skew * y) * s->unit_x) + sqrf(y * s->unit_y) <= 1.0f)) return false;
-    out->q = rectangle_point(&s->rectangle, st);
-    out->n = s->rectangle.n;
-    return true;
+    return sqrf((x - s->skew * y) * s->unit_x) + sqrf(y * s->unit_y) <= 1.0f;
 }
 
 // ---- sphere -----------------------------------------------------------------------------------------------------
@@ -210,7 +225,7 @@ static bool sphere_sample(const Source *s, Vec3 p, Vec2 u, SourcePoint *out)
         Vec3 w = warp_sphere(u);
         float b = v3_dot(to_p, w), t = -b + safe_sqrtf(b * b + r2 - d2);
         n = v3_normalize(v3_mad(to_p, t, w));
-        out->pdf = 0.25f * SHEEN_INV_PI;
+        out->solid_angle = 4.0f * SHEEN_PI;
     } else {
         float sin2_max = r2 / d2, cos_max, height = cone_height(sin2_max, &cos_max);
         float z = u.x * height, share = u.x * (2.0f - z) / (1.0f + cos_max); // share = sin^2 / sin^2_max
@@ -218,11 +233,11 @@ static bool sphere_sample(const Source *s, Vec3 p, Vec2 u, SourcePoint *out)
         float sin_a = safe_sqrtf(1.0f - cos_a * cos_a), phi = 2.0f * SHEEN_PI * u.y;
         Frame f = frame_from_normal(v3_scale(to_p, 1.0f / sqrtf(d2)));
         n = v3_normalize(frame_to_world(&f, v3(sin_a * cosf(phi), sin_a * sinf(phi), cos_a)));
-        out->pdf = 0.5f * SHEEN_INV_PI / height;
+        out->solid_angle = 2.0f * SHEEN_PI * height;
     }
     out->q = v3_mad(sphere->center, sphere->radius, n);
     out->n = sphere->flip ? v3_neg(n) : n;
-    return true;
+    return look(p, out) > 0.0f;
 }
 
 static float sphere_pdf(const Source *s, Vec3 p)

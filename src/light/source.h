@@ -39,11 +39,13 @@ typedef struct Source {
     EnvironmentSampler environment;
 } Source;
 
-/** A point on a finite light. */
+/** A point on a finite light, seen from a point p. */
 typedef struct SourcePoint {
-    Vec3 q;    // world space
-    Vec3 n;    // unit normal of the front
-    float pdf; // density of the direction from p, 1/sr
+    Vec3 q;            // world space
+    Vec3 n;            // unit normal of the front
+    Vec3 wi;           // unit, from p to q
+    float distance;    // from p to q, metres
+    float solid_angle; // one over the density of wi, sr
 } SourcePoint;
 
 /**

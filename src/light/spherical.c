@@ -6,9 +6,6 @@
 // Rounding leaves about 1e-15 sr in a rectangle's solid angle: below this one the area takes over, whose density is as
 // even there but for points at grazing angles.
 #define RECTANGLE_MIN 1e-8
-// From so many diagonals away, squared, the area serves as well as the solid angle, whose arc tangent, sine and cosine
-// cost as much as tracing the shadow ray.
-#define RECTANGLE_FAR2 2.0f
 // Arvo's formulas lose their digits with the square of the least angle of the spherical triangle. A triangle that is
 // small from p is left to its area, whose density then varies by a third at most; a near one that is thin, since p is
 // almost in its plane, only where it fills less than this.
@@ -102,25 +99,15 @@ static float far_density(const SheenRectangle *r, Vec3 p, Vec3 q)
     return height > 0.0f ? d2 * sqrtf(d2) / (height * r->area) : 0.0f;
 }
 
-static bool is_far(const SheenRectangle *r, Vec3 p)
+bool sheen_rectangle_sample(const SheenRectangle *r, Vec3 p, Vec2 u, Vec2 *st, float *solid_angle)
 {
-    return v3_length2(v3_sub(r->center, p)) > RECTANGLE_FAR2 * r->diagonal2;
-}
-
-bool sheen_rectangle_sample(const SheenRectangle *r, Vec3 p, Vec2 u, Vec2 *st, float *pdf)
-{
-    if (is_far(r, p)) {
-        *st = u;
-        *pdf = far_density(r, p, v3_mad(v3_mad(r->corner, u.x, r->ex), u.y, r->ey));
-        return *pdf > 0.0f && isfinite(*pdf);
-    }
     View v;
     if (!view_from(r, p, &v)) return false;
     if (!by_solid_angle(&v)) {
         *st = u;
         double x = v.x0 + (double)u.x * r->lx, y = v.y0 + (double)u.y * r->ly;
-        *pdf = (float)area_density(x * x + y * y + v.z * v.z, -v.z * r->lx * r->ly);
-        return isfinite(*pdf);
+        *solid_angle = (float)(1.0 / area_density(x * x + y * y + v.z * v.z, -v.z * r->lx * r->ly));
+        return true;
     }
     // Vertical great circle that cuts off the part u of the solid angle: angle au = u S + k.
     double us = (double)u.x * v.solid_angle, c = cos(us), s = sin(us), z2 = v.z * v.z;
@@ -133,13 +120,13 @@ bool sheen_rectangle_sample(const SheenRectangle *r, Vec3 p, Vec2 u, Vec2 *st, f
     double h = h0 + (double)u.y * (h1 - h0);
     double y = clampd(h * sqrt(d2 / fmax(1.0 - h * h, 1e-300)), v.y0, v.y1);
     *st = v2((float)((x - v.x0) / r->lx), (float)((y - v.y0) / r->ly));
-    *pdf = (float)(1.0 / v.solid_angle);
+    *solid_angle = (float)v.solid_angle;
     return true;
 }
 
 float sheen_rectangle_pdf(const SheenRectangle *r, Vec3 p, Vec3 q)
 {
-    if (is_far(r, p)) return far_density(r, p, q);
+    if (sheen_rectangle_is_far(r, p)) return far_density(r, p, q);
     View v;
     if (!view_from(r, p, &v)) return 0.0f;
     if (by_solid_angle(&v)) return (float)(1.0 / v.solid_angle);

@@ -54,16 +54,27 @@ typedef struct SheenRectangle {
 /** ex and ey are perpendicular and not zero. */
 SheenRectangle sheen_rectangle_make(Vec3 corner, Vec3 ex, Vec3 ey);
 
+// From so many diagonals away, squared, the area serves as well as the solid angle, whose arc tangent, sine and cosine
+// cost as much as tracing the shadow ray.
+#define RECTANGLE_FAR2 2.0f
+
+/** @return true where the rectangle is so far from p that its points are drawn uniformly over the area. */
+static inline bool sheen_rectangle_is_far(const SheenRectangle *r, Vec3 p)
+{
+    return v3_length2(v3_sub(r->center, p)) > RECTANGLE_FAR2 * r->diagonal2;
+}
+
 /**
  * A point of the rectangle, uniform over the solid angle seen from p; over the area where that is too small to tell.
- * @param st   coordinates of the point on the rectangle, [0, 1]^2
- * @param pdf  density with respect to solid angle, 1/sr
+ * For points that are not far, but it would be right for those, too.
+ * @param st           coordinates of the point on the rectangle, [0, 1]^2
+ * @param solid_angle  one over the density, sr
  * @return false when p is not in front of the rectangle
  * Source: urena2013-spherical-rectangle.
  */
-bool sheen_rectangle_sample(const SheenRectangle *r, Vec3 p, Vec2 u, Vec2 *st, float *pdf);
+bool sheen_rectangle_sample(const SheenRectangle *r, Vec3 p, Vec2 u, Vec2 *st, float *solid_angle);
 
-/** @return the density, 1/sr, with which sheen_rectangle_sample draws the direction from p to q on the rectangle. */
+/** @return the density, 1/sr, with which a rectangle's directions are drawn from p, far or near, for the one to q. */
 float sheen_rectangle_pdf(const SheenRectangle *r, Vec3 p, Vec3 q);
 
 /**
