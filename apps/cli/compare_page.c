@@ -210,7 +210,7 @@ static void add_entry(TextBuffer *out, const ComparePage *page, const PageEntry 
 
 static void add_table(TextBuffer *out, const ComparePage *page)
 {
-    text_add(out, "<table>\n<tr><th>image</th>");
+    text_add(out, "<div class=\"wide\">\n<table>\n<tr><th>image</th>");
     for (int i = 0; i < n_figures; ++i) text_add_format(out, "<th>%s</th>", figure_names[i]);
     text_add(out, "</tr>\n");
     for (size_t i = 0; i < page->n; ++i) {
@@ -220,13 +220,14 @@ static void add_table(TextBuffer *out, const ComparePage *page)
         text_add(out, page->entries[i].figures ? page->entries[i].figures : "");
         text_add(out, "</tr>\n");
     }
-    text_add(out, "</table>\n");
+    text_add(out, "</table>\n</div>\n");
 }
 
 bool compare_page_write(ComparePage *page)
 {
     TextBuffer out = {0};
-    text_add(&out, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>");
+    text_add(&out, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+                   "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>");
     text_add_escaped(&out, page->reference);
     text_add(&out, "</title>\n<style>\n");
     add_lines(&out, compare_style);

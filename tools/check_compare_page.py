@@ -1,0 +1,258 @@
+#!/usr/bin/env python3
+"""Opens the page of `sheen compare --html` in Chromium and uses it, as a person at a desk and one with a phone would.
+
+Renders three small pictures, compares them, and checks at 1280 x 900 with a mouse and a keyboard, and at 390 x 844 with
+a finger: nothing fails in the script; the canvases hold the pictures; slider, exposure, error map and choice of the
+image do what they say; nothing is wider than the window; a finger can still scroll the page.
+
+Usage: tools/check_compare_page.py [--sheen PROGRAM] [--keep FOLDER]      about 20 seconds
+Needs Chromium (`chromium`, or the program named by CHROMIUM) and nothing beyond Python's library: it talks to the
+browser through a pair of pipes. Prints "skipped" and exits with 77 where there is no Chromium, else with 0 or 1.
+"""
+
+import argparse
+import base64
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+failures = []
+
+
+class Browser:
+    """A headless Chromium with one page, driven by the DevTools protocol over file descriptors 3 and 4."""
+
+    def __init__(self, program, folder):
+        to_browser, self.write = os.pipe()
+        self.read, from_browser = os.pipe()
+
+        def descriptors():
+            a, b = os.dup(to_browser), os.dup(from_browser)  # either may be 3 or 4 itself
+            os.dup2(a, 3)
+            os.dup2(b, 4)
+
+        arguments = ["--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run", "--remote-debugging-pipe",
+                     f"--user-data-dir={folder}", "about:blank"]
+        self.process = subprocess.Popen([program, *arguments], preexec_fn=descriptors, close_fds=False,
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(to_browser)
+        os.close(from_browser)
+        self.buffer, self.number, self.session, self.events = b"", 0, None, []
+        target = self.call("Target.createTarget", url="about:blank")["targetId"]
+        self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Log"):
+            self.call(domain + ".enable")
+
+    def message(self):
+        while b"\0" not in self.buffer:
+            more = os.read(self.read, 1 << 20)
+            if not more:
+                raise RuntimeError("the browser has ended")
+            self.buffer += more
+        text, self.buffer = self.buffer.split(b"\0", 1)
+        return json.loads(text)
+
+    def call(self, method, **parameters):
+        self.number += 1
+        request = {"id": self.number, "method": method, "params": parameters}
+        if self.session:
+            request["sessionId"] = self.session
+        os.write(self.write, json.dumps(request).encode() + b"\0")
+        while True:
+            answer = self.message()
+            if answer.get("id") == self.number:
+                if "error" in answer:
+                    raise RuntimeError(f"{method}: {answer['error']['message']}")
+                return answer["result"]
+            self.events.append(answer)
+
+    def open(self, path, width, height, phone):
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=2 if phone else 1,
+                  mobile=phone)
+        self.call("Emulation.setTouchEmulationEnabled", enabled=phone)
+        self.events.clear()
+        self.call("Page.navigate", url=path.as_uri())
+        for _ in range(100):
+            if self.value("document.readyState === 'complete' && document.getElementById('under').width !== 300"):
+                break
+            time.sleep(0.05)
+
+    def value(self, script):
+        answer = self.call("Runtime.evaluate", expression=script, returnByValue=True)
+        if "exceptionDetails" in answer:
+            raise RuntimeError(f"{script}: {answer['exceptionDetails']}")
+        return answer["result"].get("value")
+
+    def complaints(self):
+        """What the page's script or the browser had to say."""
+        bad = []
+        for event in self.events:
+            if event.get("method") == "Runtime.exceptionThrown":
+                bad.append(event["params"]["exceptionDetails"]["exception"]["description"])
+            elif event.get("method") == "Log.entryAdded" and event["params"]["entry"]["level"] == "error":
+                bad.append(event["params"]["entry"]["text"])
+        return bad
+
+    def box(self, name):
+        return self.value(f"(() => {{ const b = document.getElementById('{name}').getBoundingClientRect();"
+                          "return [b.left, b.top, b.width, b.height]; })()")
+
+    def mouse(self, x, y):
+        self.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y)
+
+    def finger(self, *points):
+        """Puts a finger down, moves it through the points, lifts it."""
+        for i, (x, y) in enumerate(points):
+            self.call("Input.dispatchTouchEvent", type="touchMove" if i else "touchStart", touchPoints=[{"x": x, "y": y}])
+            time.sleep(0.02)
+        self.call("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+        time.sleep(0.2)
+
+    def key(self, name, code):
+        for kind in ("rawKeyDown", "keyUp"):
+            self.call("Input.dispatchKeyEvent", type=kind, key=name, code=name, windowsVirtualKeyCode=code)
+
+    def picture(self, path):
+        path.write_bytes(base64.b64decode(self.call("Page.captureScreenshot", captureBeyondViewport=False)["data"]))
+
+    def close(self):
+        self.process.terminate()
+        self.process.wait(10)
+
+
+def check(what, holds, seen=""):
+    print(f"  {'ok  ' if holds else 'FAIL'} {what}{f': {seen}' if not holds else ''}")
+    if not holds:
+        failures.append(what)
+
+
+# The mean difference, in steps of 1 / 255, of a canvas from a picture of the chosen section; the mean of a canvas.
+DIFFERENCE = """((canvas, role) => {
+  const section = sections[$('which').selectedIndex], image = section.querySelector('img.' + role);
+  const copy = new OffscreenCanvas(image.naturalWidth, image.naturalHeight).getContext('2d');
+  copy.drawImage(image, 0, 0);
+  const a = $(canvas).getContext('2d').getImageData(0, 0, image.naturalWidth, image.naturalHeight).data;
+  const b = copy.getImageData(0, 0, image.naturalWidth, image.naturalHeight).data;
+  return a.reduce((sum, x, i) => sum + Math.abs(x - b[i]), 0) / a.length;
+})"""
+MEAN = """(() => { const c = $('under'), d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+  return d.reduce((sum, x) => sum + x, 0) / d.length; })()"""
+RIGHT, DOWN = ("ArrowRight", 39), ("ArrowDown", 40)
+
+
+def check_page(b):
+    check("the script has no errors", not b.complaints(), b.complaints())
+    check("the viewer is there", b.value("!$('viewer').hidden"))
+    # A Radiance file keeps 8 bits of the largest channel, which is up to some steps in a darker one, .1 in the mean.
+    for canvas, role in (("over", "reference"), ("under", "image")):
+        off = b.value(f"{DIFFERENCE}('{canvas}', '{role}')")
+        check(f"the {role} is drawn as its PNG", off <= 0.3, off)
+    left, _, width, _ = b.box("stage")
+    window = b.value("window.innerWidth")
+    check("the stage is in the window", left >= 0 and left + width <= window, (left, width))
+    check("nothing is wider than the window", b.value("document.documentElement.scrollWidth") <= window,
+          b.value("document.documentElement.scrollWidth"))
+    check("controls are high enough for a finger", b.value(
+        "Math.min(...[...document.querySelectorAll('#controls select, #controls input')]"
+        ".map(e => e.getBoundingClientRect().height))") >= 24)
+
+
+def check_keys(b):
+    b.value("$('slider').focus()")
+    before = b.value("+$('slider').value")
+    b.key(*RIGHT)
+    check("a key moves the slider", b.value("+$('slider').value") > before)
+    check("the line follows", b.value("$('over').style.clipPath").startswith(f"inset(0px {99.9 - before:.4g}")
+          or abs(b.value("100 - parseFloat($('over').style.clipPath.split(' ')[1])") - before - 0.1) < 0.05,
+          b.value("$('over').style.clipPath"))
+    dark = b.value(MEAN)
+    b.value("$('exposure').focus()")
+    for _ in range(10):
+        b.key(*RIGHT)
+    check("keys raise the exposure", abs(b.value("+$('exposure').value") - 1) < 1e-6 and b.value(MEAN) > 1.1 * dark,
+          (b.value("$('exposure').value"), dark, b.value(MEAN)))
+    check("its value is shown", b.value("$('stops').value") == "1.0", b.value("$('stops').value"))
+    b.value("$('view').focus()")
+    b.key(*DOWN)
+    check("a key shows the error map", b.value("$('view').value") == "error"
+          and b.value(f"{DIFFERENCE}('under', 'error')") == 0)
+    b.value("$('which').focus()")
+    b.key(*DOWN)
+    check("a key shows the next image", b.value("$('which').selectedIndex") == 1
+          and b.value(f"{DIFFERENCE}('under', 'error')") == 0)
+
+
+def check_mouse(b):
+    left, top, width, height = b.box("stage")
+    for share in (0.25, 0.8):
+        b.mouse(left + share * width, top + 0.5 * height)
+        got = b.value("+$('slider').value")
+        check(f"the mouse moves the slider to {100 * share:.0f} %", abs(got - 100 * share) < 1, got)
+    line = b.box("line")
+    check("the line is under the mouse", abs(line[0] + 1 - left - 0.8 * width) < 2, line)
+
+
+def check_finger(b):
+    b.value("$('stage').scrollIntoView({block: 'start'})")
+    left, top, width, height = b.box("stage")
+    y = top + 0.5 * height
+    b.finger((left + 0.3 * width, y))
+    got = b.value("+$('slider').value")
+    check("a tap moves the slider", abs(got - 30) < 2, got)
+    b.finger(*((left + x * width, y) for x in (0.3, 0.4, 0.55, 0.7)))
+    got = b.value("+$('slider').value")
+    check("a finger drags the slider", abs(got - 70) < 2, got)
+    before = b.value("window.scrollY")
+    b.finger(*((left + 0.5 * width, y - d) for d in (0, 15, 40, 80, 120)))
+    check("a finger on the picture scrolls the page", b.value("window.scrollY") > before + 50,
+          (before, b.value("window.scrollY")))
+
+
+def make_page(sheen, folder):
+    scene = ROOT / "scenes" / "cornell-box.xml"
+    for name, spp, seed in (("reference", 64, 1), ("noisy", 2, 2), ("better", 16, 3)):
+        subprocess.run([sheen, "render", scene, "--integrator", "path", "--size", "360x240", "--spp", str(spp), "--seed",
+                        str(seed), "--progress", "none", "-o", folder / f"{name}.exr"], check=True)
+    page = folder / "page.html"
+    subprocess.run([sheen, "compare", *(folder / f"{n}.exr" for n in ("reference", "noisy", "better")), "--html", page],
+                   check=True, stdout=subprocess.DEVNULL)
+    return page
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--sheen", default=ROOT / "build" / "release" / "bin" / "sheen")
+    parser.add_argument("--keep", type=pathlib.Path, help="folder for the page and pictures of it")
+    options = parser.parse_args()
+    chromium = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
+    if not chromium:
+        print("check_compare_page: skipped: no Chromium (apt-get install chromium)")
+        return 77
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = pathlib.Path(options.keep or temporary).resolve()
+        folder.mkdir(parents=True, exist_ok=True)
+        page = make_page(options.sheen, folder)
+        browser = Browser(chromium, pathlib.Path(temporary) / "profile")
+        try:
+            for name, width, height, phone in (("desk", 1280, 900, False), ("phone", 390, 844, True)):
+                print(f"{name}, {width} x {height}")
+                browser.open(page, width, height, phone)
+                browser.picture(folder / f"{name}.png")
+                check_page(browser)
+                (check_finger if phone else check_mouse)(browser)
+                browser.picture(folder / f"{name}-moved.png")
+                check_keys(browser)
+                browser.picture(folder / f"{name}-error.png")
+        finally:
+            browser.close()
+    print(f"check_compare_page: {len(failures)} of the above failed" if failures else "check_compare_page: all holds")
+    return 1 if failures else 0
+
+
+sys.exit(main())
