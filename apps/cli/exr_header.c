@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Source: OpenEXR, "OpenEXR File Layout": magic number, version, then attributes (name, type, size, value) up to an
-// empty name. All numbers are little-endian.
+// empty name. A file of several parts has a header for each, and an empty one after the last. All numbers are
+// little-endian.
 #include "exr_header.h"
 
 #include <stdbool.h>
@@ -9,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { HEADER_MAX = 1 << 20, MAGIC = 20000630, CHANNEL_FIXED = 16 };
+enum { HEADER_MAX = 1 << 20, MAGIC = 20000630, MULTI_PART = 1 << 12, CHANNEL_FIXED = 16, NAME_MAX_BYTES = 256 };
 
 /** Bytes of the file's start that are still to be read. */
 typedef struct Bytes {
@@ -34,31 +35,69 @@ static const char *read_name(Bytes *b)
     return name;
 }
 
-static void list_channels(Bytes value, json_t *channels)
+/** One attribute of a header. */
+typedef struct Attribute {
+    const char *name, *type;
+    Bytes value;
+} Attribute;
+
+/** @return false at the end of the header, and where the bytes end before; *b is then behind it, or NULL. */
+static bool next_attribute(Bytes *b, Attribute *out)
+{
+    uint32_t size;
+    out->name = read_name(b);
+    if (out->name && !*out->name) return false;
+    out->type = out->name ? read_name(b) : NULL;
+    if (!out->type || !read_u32(b, &size) || size > (size_t)(b->end - b->at)) {
+        b->at = NULL;
+        return false;
+    }
+    out->value = (Bytes){b->at, b->at + size};
+    b->at += size;
+    return true;
+}
+
+/** Writes "PART." for the header that starts here; "" when it has no name. */
+static void find_prefix(Bytes header, char prefix[NAME_MAX_BYTES])
+{
+    prefix[0] = '\0';
+    for (Attribute a; next_attribute(&header, &a);)
+        if (strcmp(a.name, "name") == 0 && strcmp(a.type, "string") == 0)
+            snprintf(prefix, NAME_MAX_BYTES, "%.*s.", (int)(a.value.end - a.value.at), (const char *)a.value.at);
+}
+
+static void list_channels(Bytes value, const char *prefix, json_t *channels)
 {
     for (;;) {
         const char *name = read_name(&value);
         if (!name || !*name || value.end - value.at < CHANNEL_FIXED) return;
-        json_array_append_new(channels, json_string(name));
+        json_array_append_new(channels, json_sprintf("%s%s", prefix, name));
         value.at += CHANNEL_FIXED; // pixel type, linearity, sampling
     }
 }
 
-static void read_attributes(Bytes b, json_t *channels, json_t *attributes)
+static void add_text(const Attribute *a, const char *prefix, json_t *attributes)
 {
-    uint32_t magic, version, size;
+    json_t *key = json_sprintf("%s%s", prefix, a->name);
+    if (!key) return; // no UTF-8
+    size_t size = (size_t)(a->value.end - a->value.at);
+    json_object_set_new(attributes, json_string_value(key), json_stringn((const char *)a->value.at, size));
+    json_decref(key);
+}
+
+static void read_headers(Bytes b, json_t *channels, json_t *attributes)
+{
+    uint32_t magic, version;
     if (!read_u32(&b, &magic) || magic != MAGIC || !read_u32(&b, &version)) return;
-    for (;;) {
-        const char *name = read_name(&b);
-        if (!name || !*name) return;
-        const char *type = read_name(&b);
-        if (!type || !read_u32(&b, &size) || size > (size_t)(b.end - b.at)) return;
-        Bytes value = {b.at, b.at + size};
-        b.at += size;
-        if (strcmp(type, "chlist") == 0) list_channels(value, channels);
-        if (strcmp(type, "string") == 0)
-            json_object_set_new(attributes, name, json_stringn((const char *)value.at, size));
-    }
+    bool several = version & MULTI_PART;
+    do {
+        char prefix[NAME_MAX_BYTES] = "";
+        if (several) find_prefix(b, prefix);
+        for (Attribute a; next_attribute(&b, &a);) {
+            if (strcmp(a.type, "chlist") == 0) list_channels(a.value, prefix, channels);
+            if (strcmp(a.type, "string") == 0) add_text(&a, prefix, attributes);
+        }
+    } while (several && b.at && b.at < b.end && *b.at != 0);
 }
 
 void exr_header_read(const char *path, json_t *channels, json_t *attributes)
@@ -68,7 +107,7 @@ void exr_header_read(const char *path, json_t *channels, json_t *attributes)
     if (file) {
         size_t n = fread(data, 1, HEADER_MAX, file);
         fclose(file);
-        read_attributes((Bytes){data, data + n}, channels, attributes);
+        read_headers((Bytes){data, data + n}, channels, attributes);
     }
     free(data);
 }

@@ -6,7 +6,7 @@
 #include <jansson.h>
 
 /**
- * Reads the (first) header of an EXR file.
+ * Reads the headers of an EXR file. Where it has several parts, names get that of their part before them and a dot.
  * @param channels    array; gains the channels' names in the order of the file
  * @param attributes  object; gains the text attributes
  * A file that is no EXR or is cut off gains what could be read until then: the pixels' reader gives the error.

@@ -5,6 +5,9 @@
 
 #include <stdatomic.h>
 
+/** SIGINT and SIGTERM end the process at once from now on, with their line and exit code: while the scene is loaded. */
+void interrupt_end_early(void);
+
 /** Catches SIGINT and SIGTERM from now on. @return the flag that the first one sets, of the whole process */
 const atomic_bool *interrupt_catch(void);
 

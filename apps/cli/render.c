@@ -220,10 +220,11 @@ static int run_render(int argc, char **argv)
     run.show = progress_show_make(v->quiet ? PROGRESS_NONE : (ProgressMode)v->progress);
     run.report = (Report){.quiet = v->quiet, .verbose = v->verbose, .strict = v->strict, .show = &run.show};
     run.log = report_log(&run.report);
-    run.interrupted = interrupt_catch();
+    interrupt_end_early();
 
     warn_about_layers(&run);
     code = run.report.failed ? CLI_WORLD : load(&run);
+    run.interrupted = interrupt_catch();
     if (code == CLI_DONE) code = render(&run);
     if (code == CLI_DONE) code = write_all(&run);
     sheen_film_destroy(&run.film);

@@ -213,20 +213,44 @@ static SheenStatus check_compression(const ImageSource *source, const exr_attr_c
                       source->name, what);
 }
 
-/** Reads windows and channels of the first part that is not deep. */
+/** Takes the first part with a colour that needs no layer, else the first, of those that are not deep. */
+static SheenStatus choose_part(const ImageSource *source, const ExrStream *stream, ExrPart *part)
+{
+    int count = 0, chosen = -1;
+    exr_result_t result = exr_get_count(part->context, &count);
+    bool found = false;
+    for (int i = 0; !result && i < count && !found; ++i) {
+        exr_storage_t storage;
+        const exr_attr_chlist_t *list = NULL;
+        result = exr_get_storage(part->context, i, &storage);
+        if (result || (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)) continue;
+        result = exr_get_channels(part->context, i, &list);
+        ExrPart tried = {0};
+        found = !result && take_color(list, "", 0, &tried);
+        if (found || chosen < 0) {
+            chosen = i;
+            part->storage = storage;
+        }
+    }
+    if (result) return sheen_exr_fail(stream, result, source->name, source->log);
+    if (chosen < 0)
+        return sheen_fail(source->log, SHEEN_ERR_UNSUPPORTED, "%s: deep pictures are not supported", source->name);
+    part->index = chosen;
+    const char *name = NULL;
+    if (count > 1 && exr_get_name(part->context, chosen, &name) == EXR_ERR_SUCCESS)
+        sheen_warn(source->log, "%s: of %d parts, part '%s' is taken", source->name, count, name);
+    return SHEEN_OK;
+}
+
+/** Reads windows and channels of the part that is taken. */
 static SheenStatus read_header(const ImageSource *source, const ExrStream *stream, ExrPart *part)
 {
-    int count = 0;
-    exr_result_t result = exr_get_count(part->context, &count);
-    for (part->index = 0; !result && part->index < count; ++part->index) {
-        result = exr_get_storage(part->context, part->index, &part->storage);
-        if (!result && (part->storage == EXR_STORAGE_SCANLINE || part->storage == EXR_STORAGE_TILED)) break;
-    }
-    if (!result && part->index == count)
-        return sheen_fail(source->log, SHEEN_ERR_UNSUPPORTED, "%s: deep pictures are not supported", source->name);
+    SheenStatus status = choose_part(source, stream, part);
+    if (status) return status;
+    exr_result_t result;
     const exr_attr_chlist_t *list = NULL;
     exr_compression_t compression = EXR_COMPRESSION_NONE;
-    if (!result) result = exr_get_data_window(part->context, part->index, &part->data);
+    result = exr_get_data_window(part->context, part->index, &part->data);
     if (!result) result = exr_get_display_window(part->context, part->index, &part->display);
     if (!result) result = exr_get_channels(part->context, part->index, &list);
     if (!result) result = exr_get_compression(part->context, part->index, &compression);
@@ -234,8 +258,7 @@ static SheenStatus read_header(const ImageSource *source, const ExrStream *strea
     if (box_width(part->data) <= 0 || box_height(part->data) <= 0 || box_width(part->display) <= 0 ||
         box_height(part->display) <= 0)
         return sheen_fail(source->log, SHEEN_ERR_PARSE, "%s: the picture is empty", source->name);
-    SheenStatus status =
-        sheen_image_check_size(source, (uint64_t)box_width(part->data), (uint64_t)box_height(part->data));
+    status = sheen_image_check_size(source, (uint64_t)box_width(part->data), (uint64_t)box_height(part->data));
     if (!status) status = check_compression(source, list, compression);
     return status ? status : choose_channels(source, list, part);
 }

@@ -35,6 +35,10 @@ for words in '^kind +image$' '^size +24, 16$' '^red +mean 0\.[0-9]+, min ' 'nonf
     grep -Eq "$words" out || fail "info of the picture does not tell: $words"
 done
 
+# Of several parts all channels are told, and which part's colours the figures are.
+expect 0 info "$SOURCE/fuzz/corpus/image/parts_depth_first.exr"; says "of 2 parts, part 'beauty' is taken\$"
+grep -Eq '^channels +depth\.Z, beauty\.B, beauty\.G, beauty\.R$' out || fail "info does not tell the parts' channels"
+
 # A file's own text reaches the terminal neither as a command nor as a second line.
 name=$(printf 'e\033[31mvil\n.xml')
 cat >"$name" <<'END'

@@ -26,6 +26,27 @@ for signal in INT TERM; do
     done
 done
 
+# So it does while the scene is loaded, here from a pipe into which nobody writes.
+mkfifo scene.xml
+for signal in INT TERM; do
+    echo old >a.exr
+    "$SHEEN" render scene.xml -o a.exr 2>err &
+    pid=$!
+    sleep 0.3
+    kill -$signal $pid
+    for _ in $(seq 50); do
+        kill -0 $pid 2>/dev/null || break
+        sleep 0.1
+    done
+    kill -KILL $pid 2>/dev/null && fail "SIG$signal does not end the loading of a scene"
+    wait $pid; code=$?
+    [ $code -eq 130 ] || fail "exit code $code instead of 130 after SIG$signal while loading"
+    [ "$(cat err)" = "sheen: interrupted; nothing was written" ] || fail "SIG$signal is not told while loading"
+    [ "$(cat a.exr)" = old ] || fail "SIG$signal while loading changed the existing picture"
+    n_checks=$((n_checks + 4))
+done
+rm scene.xml
+
 # Twice ends at once, even where the work would not look for long.
 start -o a.exr --integrator path
 kill -INT $pid; kill -INT $pid 2>/dev/null
