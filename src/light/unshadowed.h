@@ -8,7 +8,7 @@
 #include "light/source.h"
 
 /** The arrays are longer than their kind by this, zero there, and results may run over by less than this. */
-#define ESTIMATE_PADDING 16u
+#define ESTIMATE_PADDING 8u
 
 /** Flat convex lights with four vertices; a triangle has its last one twice, a disk is in its bounding rectangle. */
 typedef struct Polygons {
