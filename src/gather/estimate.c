@@ -20,16 +20,23 @@ static Rgb sum_rgb(RgbSum s)
     return rgb((float)s.r, (float)s.g, (float)s.b);
 }
 
-float sheen_harmonic_mean(unsigned n, const float distance[])
+// One over each distance, 0 for an infinite one. The nearer of two has the larger.
+static void invert(unsigned n, const float distance[], float *restrict inverse)
 {
-    double sum = 0.0;
-    for (unsigned i = 0; i < n; ++i) sum += 1.0 / (double)distance[i];
-    return sum > 0.0 ? (float)((double)n / sum) : INFINITY;
+    for (unsigned i = 0; i < n; ++i) inverse[i] = 1.0f / distance[i];
 }
 
-static double inverse_of_nearer(float a, float b)
+float sheen_harmonic_mean(unsigned n, const float distance[])
 {
-    return 1.0 / (double)minf(a, b); // 0 for two infinite distances
+    enum { BLOCK = 64 };
+    float inverse[BLOCK];
+    double sum = 0.0;
+    for (unsigned first = 0; first < n; first += BLOCK) {
+        unsigned count = n - first < BLOCK ? n - first : BLOCK;
+        invert(count, distance + first, inverse);
+        for (unsigned i = 0; i < count; ++i) sum += (double)inverse[i];
+    }
+    return sum > 0.0 ? (float)((double)n / sum) : INFINITY;
 }
 
 // Weights of the walls, the same in every sector.
@@ -49,13 +56,25 @@ static void fill_table(unsigned rings, WallTable *t)
     }
 }
 
-// Radiance exchanged across the walls of one sector: between its rings (u), and to the sector before it (v).
-static void add_walls(SheenStrata s, const WallTable *t, const Rgb L[], const float distance[], const Rgb L_before[],
-                      const float distance_before[], RgbSum *u, RgbSum *v)
+/** One sector: [rings] radiance, and one over the distance. */
+typedef struct Sector {
+    const Rgb *L;
+    float inverse[SHEEN_RINGS_MAX];
+} Sector;
+
+static void read_sector(SheenStrata s, unsigned k, const Rgb L[], const float distance[], Sector *out)
 {
+    out->L = L + (size_t)k * s.rings;
+    invert(s.rings, distance + (size_t)k * s.rings, out->inverse);
+}
+
+// Radiance exchanged across the walls of one sector: between its rings (u), and to the sector before it (v).
+static void add_walls(SheenStrata s, const WallTable *t, const Sector *here, const Sector *before, RgbSum *u, RgbSum *v)
+{
+    const float *r = here->inverse;
     for (unsigned j = 0; j < s.rings; ++j) {
-        if (j) sum_add(u, t->ring[j] * inverse_of_nearer(distance[j], distance[j - 1]), rgb_sub(L[j], L[j - 1]));
-        sum_add(v, t->sector[j] * inverse_of_nearer(distance[j], distance_before[j]), rgb_sub(L[j], L_before[j]));
+        if (j) sum_add(u, t->ring[j] * (double)maxf(r[j], r[j - 1]), rgb_sub(here->L[j], here->L[j - 1]));
+        sum_add(v, t->sector[j] * (double)maxf(r[j], before->inverse[j]), rgb_sub(here->L[j], before->L[j]));
     }
 }
 
@@ -65,10 +84,13 @@ static void translation_gradient(SheenStrata s, const Rgb L[], const float dista
     fill_table(s.rings, &table);
     RgbSum x = {0, 0, 0}, y = {0, 0, 0};
     const double two_pi = 6.283185307179586;
+    Sector sectors[2];
+    read_sector(s, s.sectors - 1, L, distance, &sectors[1]);
     for (unsigned k = 0; k < s.sectors; ++k) {
-        size_t here = (size_t)k * s.rings, before = (size_t)(k ? k - 1 : s.sectors - 1) * s.rings;
+        Sector *here = &sectors[k & 1], *before = &sectors[~k & 1];
+        read_sector(s, k, L, distance, here);
         RgbSum u = {0, 0, 0}, v = {0, 0, 0};
-        add_walls(s, &table, L + here, distance + here, L + before, distance + before, &u, &v);
+        add_walls(s, &table, here, before, &u, &v);
         double middle = two_pi * (k + 0.5) / s.sectors, edge = two_pi * k / s.sectors, width = two_pi / s.sectors;
         sum_add(&x, width * cos(middle), sum_rgb(u));
         sum_add(&y, width * sin(middle), sum_rgb(u));
@@ -89,9 +111,9 @@ void sheen_estimate_irradiance(SheenStrata s, const Vec3 directions[], const Rgb
         sum_add(&E, per_cell, L[i]);
         // n x d = (-d.y, d.x, 0) in the local frame, over the density cos(theta) / pi of the samples. A grazing sample
         // is cut at 0.6 degrees, where one ray would outweigh all others.
-        double scale = per_cell / (double)maxf(directions[i].z, 0.01f);
-        sum_add(&rx, -(double)directions[i].y * scale, L[i]);
-        sum_add(&ry, (double)directions[i].x * scale, L[i]);
+        float inverse = 1.0f / maxf(directions[i].z, 0.01f);
+        sum_add(&rx, -per_cell * (double)(directions[i].y * inverse), L[i]);
+        sum_add(&ry, per_cell * (double)(directions[i].x * inverse), L[i]);
     }
     out->E = sum_rgb(E);
     out->rotation[0] = sum_rgb(rx);

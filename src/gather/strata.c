@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gather/strata.h"
 
+#include "base/hash.h"
+
+#include <stddef.h>
+
 SheenStrata sheen_strata_cosine(unsigned n_rays)
 {
     if (n_rays < 4) n_rays = 4;
@@ -17,4 +21,27 @@ Vec3 sheen_strata_direction(SheenStrata s, unsigned j, unsigned k, Vec2 u)
     float phi = 2.0f * SHEEN_PI * ((float)k + u.y) / (float)s.sectors;
     float r = sqrtf(sin2);
     return v3(r * cosf(phi), r * sinf(phi), safe_sqrtf(1.0f - sin2));
+}
+
+// The cells of one sector. The angle from the sector's middle is at most pi / 3: there these Taylor polynomials are as
+// exact as floats are, and the loop has no calls, so that it becomes vector instructions.
+static void sector_directions(SheenStrata s, unsigned k, uint32_t key, Vec3 *restrict out)
+{
+    float width = 2.0f * SHEEN_PI / (float)s.sectors, per_ring = 1.0f / (float)s.rings;
+    float middle = ((float)k + 0.5f) * width, c = cosf(middle), d = sinf(middle);
+    uint32_t first = k * s.rings;
+    for (uint32_t j = 0; j < s.rings; ++j) {
+        uint32_t hash = hash_combine(key, first + j);
+        float a = (hash_to_unit(hash_u32(hash ^ 0x5bd1e995u)) - 0.5f) * width, a2 = a * a;
+        float cos_a = 1.0f + a2 * (-1.0f / 2 +
+                                   a2 * (1.0f / 24 + a2 * (-1.0f / 720 + a2 * (1.0f / 40320 - a2 * (1.0f / 3628800)))));
+        float sin_a = a * (1.0f + a2 * (-1.0f / 6 + a2 * (1.0f / 120 + a2 * (-1.0f / 5040 + a2 * (1.0f / 362880)))));
+        float sin2 = ((float)j + hash_to_unit(hash)) * per_ring, r = sqrtf(sin2);
+        out[j] = v3(r * (c * cos_a - d * sin_a), r * (d * cos_a + c * sin_a), safe_sqrtf(1.0f - sin2));
+    }
+}
+
+void sheen_strata_directions(SheenStrata s, uint32_t key, Vec3 out[])
+{
+    for (unsigned k = 0; k < s.sectors; ++k) sector_directions(s, k, key, out + (size_t)k * s.rings);
 }

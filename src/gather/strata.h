@@ -5,6 +5,8 @@
 
 #include "math/vec.h"
 
+#include <stdint.h>
+
 /** Most rings that strata may have. */
 enum { SHEEN_RINGS_MAX = 512 };
 
@@ -27,5 +29,12 @@ static inline unsigned strata_count(SheenStrata s)
  * @return   unit, local: sin^2(theta) = (j + u.x) / M, phi = 2 pi (k + u.y) / N
  */
 Vec3 sheen_strata_direction(SheenStrata s, unsigned j, unsigned k, Vec2 u);
+
+/**
+ * A jittered direction in each cell: those of sheen_strata_direction, to a few units in the last place, for random
+ * numbers that are hashes of the key and the cell.
+ * @param out  [cells]
+ */
+void sheen_strata_directions(SheenStrata s, uint32_t key, Vec3 out[]);
 
 #endif

@@ -99,13 +99,7 @@ static void receive(const SheenWork *work, const Followed *f, Rgb weight, uint32
 
 void sheen_hemisphere_directions(uint32_t key, Hemisphere *h)
 {
-    uint32_t strata_key = hash_combine(key, KEY_STRATA);
-    for (unsigned k = 0, i = 0; k < h->strata.sectors; ++k)
-        for (unsigned j = 0; j < h->strata.rings; ++j, ++i) {
-            uint32_t r = hash_combine(strata_key, i);
-            Vec2 u = v2(hash_to_unit(r), hash_to_unit(hash_u32(r ^ 0x5bd1e995u)));
-            h->directions[i] = sheen_strata_direction(h->strata, j, k, u);
-        }
+    sheen_strata_directions(h->strata, hash_combine(key, KEY_STRATA), h->directions);
 }
 
 // Asks the strata whose ray came to a mirror or a pane for lamps again, several times: a lamp seen there is small and
