@@ -85,8 +85,12 @@ MemoCell sheen_memo_cell(Vec3 p, Vec3 n, float size, uint32_t tag)
     float x = floorf(l.x * inverse), y = floorf(l.y * inverse), z = floorf(l.z * inverse / SHEEN_MEMO_DEPTH);
     cell.center = frame_to_world(&f, v3((x + 0.5f) * side, (y + 0.5f) * side, (z + 0.5f) * depth));
     cell.depth = depth;
-    // A 64-bit hash stands for all coordinates: two of a million cells share one in one of 10^7 pictures.
-    uint64_t h = hash_cell((int64_t)x, (int64_t)y, (int64_t)z, code << 42 ^ (uint64_t)tag << 8 ^ level >> 23);
+    // A 60-bit hash stands for all coordinates: two of a million cells share one in one of 10^6 pictures.
+    // The lowest bits are the place within a square of four by four cells: those lie side by side in the table, in four
+    // cache lines.
+    int64_t i = (int64_t)x, j = (int64_t)y;
+    uint64_t h = hash_cell(i >> 2, j >> 2, (int64_t)z, code << 42 ^ (uint64_t)tag << 8 ^ level >> 23);
+    h = h << 4 | (uint64_t)(i & 3) << 2 | (uint64_t)(j & 3);
     cell.key = h ? h : 1;
     return cell;
 }

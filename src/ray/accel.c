@@ -158,6 +158,18 @@ static struct RTCIntersectContext batch_context(SheenCoherence coherence)
     return context;
 }
 
+// What all packets have in common; Embree leaves it as it is.
+static void init_packet(struct RTCRay16 *p)
+{
+    for (int i = 0; i < PACKET; ++i) {
+        p->tnear[i] = 0.0f;
+        p->mask[i] = ~0u;
+        p->time[i] = 0.0f;
+        p->flags[i] = 0;
+        p->id[i] = 0;
+    }
+}
+
 // Fills lane i of a packet.
 static void fill_lane(struct RTCRay16 *p, int i, const Ray *r)
 {
@@ -167,12 +179,7 @@ static void fill_lane(struct RTCRay16 *p, int i, const Ray *r)
     p->dir_x[i] = r->d.x;
     p->dir_y[i] = r->d.y;
     p->dir_z[i] = r->d.z;
-    p->tnear[i] = 0.0f;
     p->tfar[i] = r->t_max;
-    p->mask[i] = ~0u;
-    p->time[i] = 0.0f;
-    p->flags[i] = 0;
-    p->id[i] = 0;
 }
 
 // Fills a packet from the front of n rays and returns how many it took. Skipped rays are invalid, and so are lanes
@@ -180,20 +187,20 @@ static void fill_lane(struct RTCRay16 *p, int i, const Ray *r)
 static int fill_packet(struct RTCRay16 *p, int valid[PACKET], size_t n, const Ray rays[])
 {
     int count = n < PACKET ? (int)n : PACKET;
-    for (int i = 0; i < PACKET; ++i) {
-        const Ray *r = &rays[i < count ? i : count - 1];
-        fill_lane(p, i, r);
-        valid[i] = i < count && r->t_max >= 0.0f ? -1 : 0;
-    }
+    for (int i = 0; i < count; ++i) fill_lane(p, i, &rays[i]);
+    for (int i = count; i < PACKET; ++i) fill_lane(p, i, &rays[count - 1]);
+    for (int i = 0; i < PACKET; ++i) valid[i] = p->tfar[i] >= 0.0f ? -1 : 0;
+    for (int i = count; i < PACKET; ++i) valid[i] = 0;
     return count;
 }
 
 void sheen_accel_intersect_many(const SheenAccel *a, SheenCoherence coherence, size_t n, const Ray rays[], Hit hits[])
 {
     struct RTCIntersectContext context = batch_context(coherence);
+    _Alignas(64) struct RTCRayHit16 p;
+    _Alignas(64) int valid[PACKET];
+    init_packet(&p.ray);
     for (size_t first = 0; first < n; first += PACKET) {
-        _Alignas(64) struct RTCRayHit16 p;
-        _Alignas(64) int valid[PACKET];
         int count = fill_packet(&p.ray, valid, n - first, rays + first);
         for (int i = 0; i < PACKET; ++i) {
             p.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
@@ -210,9 +217,10 @@ void sheen_accel_occluded_many(const SheenAccel *a, SheenCoherence coherence, si
                                unsigned char occluded[])
 {
     struct RTCIntersectContext context = batch_context(coherence);
+    _Alignas(64) struct RTCRay16 p;
+    _Alignas(64) int valid[PACKET];
+    init_packet(&p);
     for (size_t first = 0; first < n; first += PACKET) {
-        _Alignas(64) struct RTCRay16 p;
-        _Alignas(64) int valid[PACKET];
         int count = fill_packet(&p, valid, n - first, rays + first);
         rtcOccluded16(valid, a->world, &context, &p);
         // Embree marks an occluded ray by tfar = -inf; a skipped one has had a negative tfar from the start.
