@@ -194,10 +194,11 @@ static unsigned level_of(uint32_t pixel, uint32_t width)
 
 static void order_points(Waves *w, size_t n, uint32_t width)
 {
-    w->n_open = 0;
-    for (unsigned level = 0; level <= 6; ++level)
-        for (size_t i = 0; i < n; ++i)
-            if (level_of(w->points[i].pixel, width) == level) w->open[w->n_open++] = (uint32_t)i;
+    size_t next[8] = {0}; // of each level, where its next point goes
+    for (size_t i = 0; i < n; ++i) ++next[level_of(w->points[i].pixel, width) + 1];
+    for (unsigned level = 0; level < 7; ++level) next[level + 1] += next[level];
+    for (size_t i = 0; i < n; ++i) w->open[next[level_of(w->points[i].pixel, width)]++] = (uint32_t)i;
+    w->n_open = n;
 }
 
 // Drops the covered points and chooses the wave's records among the rest.

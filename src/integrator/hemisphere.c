@@ -169,7 +169,7 @@ size_t sheen_hemisphere_extend(const SheenWork *work, float near, Hemisphere *h,
     for (size_t i = 0; i < h->n_vertices; ++i) {
         GatherVertex v = h->vertices[i];
         if (!(v.distance < near)) {
-            h->vertices[kept++] = v;
+            if (kept++ < i) h->vertices[kept - 1] = v;
             continue;
         }
         SheenSampler sampler = sampler_make(hash_combine(key, v.bounces), v.cell);
