@@ -1,14 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrator/follow.h"
 
+// A point on the side of a surface that wo is on. @return false when it is black
+static inline bool set_point(const SurfacePoint *s, bool front, Rgb reflectance, DiffusePoint *out)
+{
+    Vec3 ng = front ? s->ng : v3_neg(s->ng), n = front ? s->ns : v3_neg(s->ns);
+    *out = (DiffusePoint){s->p, sheen_surface_leave(s, ng), ng, n, reflectance};
+    return !rgb_is_black(reflectance);
+}
+
 bool sheen_diffuse_point(const SurfacePoint *s, const Bsdf *bsdf, Vec3 wo, DiffusePoint *out)
 {
     bool front = v3_dot(wo, s->ng) >= 0.0f;
     if (!front && !bsdf->material->two_sided) return false;
-    if (rgb_is_black(bsdf->reflectance)) return false;
-    Vec3 ng = front ? s->ng : v3_neg(s->ng), n = front ? s->ns : v3_neg(s->ns);
-    *out = (DiffusePoint){s->p, sheen_surface_leave(s, ng), ng, n, bsdf->reflectance};
-    return true;
+    return set_point(s, front, bsdf->reflectance, out);
+}
+
+static float unit_or_zero(float x) // a NaN becomes 0
+{
+    return x > 0.0f ? minf(x, 1.0f) : 0.0f;
+}
+
+bool sheen_lambertian_point(const SheenMaterial *material, const SurfacePoint *s, Vec3 wo, DiffusePoint *out)
+{
+    bool front = v3_dot(wo, s->ng) >= 0.0f;
+    if (!front && !material->two_sided) return false;
+    const SheenTexture *t = &material->reflectance;
+    Rgb c = t->kind == SHEEN_TEXTURE_CONSTANT ? t->value : sheen_texture_eval(t, s->uv);
+    return set_point(s, front, rgb(unit_or_zero(c.r), unit_or_zero(c.g), unit_or_zero(c.b)), out);
 }
 
 void sheen_follow(const SheenWork *work, const Ray *ray, const Hit *hit, SheenSampler *sampler, uint64_t *specular_rays,
@@ -29,6 +48,11 @@ void sheen_follow(const SheenWork *work, const Ray *ray, const Hit *hit, SheenSa
         Vec3 wo = v3_neg(ray->d);
         out->distance += hit->t;
         out->emitted = sheen_emitted(work->scene, &s, wo);
+        const SheenMaterial *lambertian = sheen_lambertian(work->scene, &s);
+        if (lambertian) {
+            out->scatters = sheen_lambertian_point(lambertian, &s, wo, &out->point);
+            return;
+        }
         Bsdf bsdf = sheen_bsdf_at(work->scene, &s);
         if (!sheen_bsdf_is_delta(&bsdf)) {
             out->scatters = sheen_diffuse_point(&s, &bsdf, wo, &out->point);

@@ -21,6 +21,16 @@ typedef struct DiffusePoint {
 /** The same for a surface seen along wo (unit, toward the viewer). @return false when it is black from there. */
 bool sheen_diffuse_point(const SurfacePoint *s, const Bsdf *bsdf, Vec3 wo, DiffusePoint *out);
 
+/** @return the material of a surface that is Lambertian and nothing else, which needs no BSDF; NULL for others. */
+static inline const SheenMaterial *sheen_lambertian(const SheenScene *scene, const SurfacePoint *s)
+{
+    const SheenMaterial *m = &scene->materials[scene->shapes[s->shape].material];
+    return m->kind == SHEEN_MATERIAL_DIFFUSE ? m : NULL;
+}
+
+/** As sheen_diffuse_point, on a Lambertian surface. */
+bool sheen_lambertian_point(const SheenMaterial *material, const SurfacePoint *s, Vec3 wo, DiffusePoint *out);
+
 /** Where a ray ended. */
 typedef struct Followed {
     bool scatters;     // `point` is set

@@ -114,17 +114,20 @@ static bool split(const SheenWork *work, const EyeRay *r, const SurfacePoint *s,
     return true;
 }
 
-static void add_first_hit(const SheenWork *work, const EyeRay *r, const Hit *hit, const SurfacePoint *s,
-                          const Bsdf *bsdf, float weight, SheenFilm *film)
+static void add_first_hit(const SheenWork *work, const EyeRay *r, const Hit *hit, const SurfacePoint *s, float weight,
+                          SheenFilm *film)
 {
     uint32_t x = r->pixel % work->width, y = r->pixel / work->width;
     Vec3 n = v3_dot(s->ns, r->ray.d) <= 0.0f ? s->ns : v3_neg(s->ns);
-    Frame frame = frame_from_normal(n);
-    Rgb albedo = sheen_bsdf_albedo(bsdf, frame_to_local(&frame, v3_neg(r->ray.d)));
     film_add(film, SHEEN_AOV_DEPTH, x, y, rgb_gray(weight * hit->t));
     film_add(film, SHEEN_AOV_POSITION, x, y, rgb_scale(rgb(s->p.x, s->p.y, s->p.z), weight));
     film_add(film, SHEEN_AOV_NORMAL, x, y, rgb_scale(rgb(n.x, n.y, n.z), weight));
-    film_add(film, SHEEN_AOV_ALBEDO, x, y, rgb_scale(albedo, weight));
+    if (film->aov[SHEEN_AOV_ALBEDO]) {
+        Frame frame = frame_from_normal(n);
+        Bsdf bsdf = sheen_bsdf_at(work->scene, s);
+        Rgb albedo = sheen_bsdf_albedo(&bsdf, frame_to_local(&frame, v3_neg(r->ray.d)));
+        film_add(film, SHEEN_AOV_ALBEDO, x, y, rgb_scale(albedo, weight));
+    }
     film_add(film, SHEEN_AOV_UV, x, y, rgb_scale(rgb(s->uv.x, s->uv.y, 0.0f), weight));
     if (r->sample == 0)
         film_add(film, SHEEN_AOV_PRIMITIVE, x, y,
@@ -152,17 +155,22 @@ static bool arrive(const SheenWork *work, const SheenEye *eye, EyeRay *r, const 
     }
     SurfacePoint s;
     sheen_surface_from_hit(work->scene, &r->ray, hit, &s);
-    Bsdf bsdf = sheen_bsdf_at(work->scene, &s);
     Vec3 wo = v3_neg(r->ray.d);
     r->length += hit->t;
     if (film) {
         Rgb emitted = sheen_emitted(work->scene, &s, wo);
         if (!rgb_is_black(emitted)) add_light(work, r, emitted, weight, film, stats);
-        if (r->depth == 0) add_first_hit(work, r, hit, &s, &bsdf, weight, film);
+        if (r->depth == 0) add_first_hit(work, r, hit, &s, weight, film);
     }
-    if (sheen_bsdf_is_delta(&bsdf)) return split(work, r, &s, &bsdf, next, v);
     ShadingPoint p = {.throughput = r->throughput, .pixel = r->pixel, .sample = r->sample, .branch = r->branch};
-    if (!sheen_diffuse_point(&s, &bsdf, wo, &p.point)) return true;
+    const SheenMaterial *lambertian = sheen_lambertian(work->scene, &s);
+    if (lambertian) {
+        if (!sheen_lambertian_point(lambertian, &s, wo, &p.point)) return true;
+    } else {
+        Bsdf bsdf = sheen_bsdf_at(work->scene, &s);
+        if (sheen_bsdf_is_delta(&bsdf)) return split(work, r, &s, &bsdf, next, v);
+        if (!sheen_diffuse_point(&s, &bsdf, wo, &p.point)) return true;
+    }
     p.footprint = r->length * eye->pixel;
     return push_point(v, &p);
 }
