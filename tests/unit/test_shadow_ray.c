@@ -68,7 +68,7 @@ static int count_occluded(const Traced *t, Vec3 p, float spread)
 static void test_lamp_at_a_wall(void **state)
 {
     (void)state;
-    const float scales[] = {0.1f, 1, 100};
+    const float scales[] = {1e-4f, 0.1f, 1, 100, 1e4f};
     const Vec3 origins[] = {{0, 0, 0}, {30, -20, 10}};
     for (size_t i = 0; i < sizeof scales / sizeof *scales; ++i)
         for (size_t j = 0; j < sizeof origins / sizeof *origins; ++j)
@@ -94,6 +94,24 @@ static void test_lamp_at_a_wall(void **state)
                         assert_true(n > N_RAYS / 2); // all that were sampled
                     trace_end(&t);
                 }
+}
+
+// A lamp of a metre at the origin, seen from kilometres away: its own coordinates are small, the ray's rounding is not.
+static void test_far_lamp(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < 3; ++kind) {
+        LightScene s = light_scene_begin();
+        Vec3 v[4], n = v3_normalize(v3(0.3f, 0.5f, -1)), t = v3_normalize(v3_cross(n, v3(0, 1, 0))), b = v3_cross(n, t);
+        for (int i = 0; i < 4; ++i)
+            v[i] = v3_mad(v3_scale(t, i == 1 || i == 2 ? 0.5f : -0.5f), i >= 2 ? 0.5f : -0.5f, b);
+        if (kind == 0) add_quad(&s, v, rgb_gray(1));
+        if (kind == 1) add_triangle(&s, v[0], v[1], v[2], rgb_gray(1));
+        if (kind == 2) add_disk(&s, v3(0, 0, 0), v3_scale(t, 0.5f), v3_scale(b, 0.5f), rgb_gray(1));
+        Traced traced = trace_begin(s);
+        assert_int_equal(count_occluded(&traced, v3(123, 456, -9000), 2000), 0);
+        trace_end(&traced);
+    }
 }
 
 static void test_sphere(void **state)
@@ -178,6 +196,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_lamp_at_a_wall),
+        cmocka_unit_test(test_far_lamp),
         cmocka_unit_test(test_sphere),
         cmocka_unit_test(test_the_ray_beyond_hits_the_light),
         cmocka_unit_test(test_infinite_and_point_lights),
