@@ -135,7 +135,7 @@ const Option render_options[] = {
      .argument = "A",
      .meaning = "The largest interpolation error of the cache: a record is used where its weight is over 1/A. Smaller "
                 "is finer and slower.",
-     .standard = "0.15",
+     .standard = "0.2",
      .example = "--accuracy 0.1",
      .recorded = true,
      RANGE(0.01, 1.0),
@@ -143,9 +143,10 @@ const Option render_options[] = {
     {.kind = OPTION_COUNT,
      .name = "gather-rays",
      .argument = "N",
-     .meaning = "Rays for each record of the cache, rounded to its grid of strata.",
-     .standard = "1024",
-     .example = "--gather-rays 2048",
+     .meaning = "First rays for each record of the cache, rounded to its grid of strata. Where they find light hard to "
+                "catch up to three times as many follow.",
+     .standard = "400",
+     .example = "--gather-rays 1000",
      .recorded = true,
      RANGE(16, 1 << 20),
      FIELD(gather_rays)},
@@ -172,8 +173,8 @@ const Option render_options[] = {
      .argument = "on|off",
      .meaning = "Keep the radius of a record below that of its neighbors plus their distance, so that small detail is "
                 "not skipped.",
-     .standard = "off",
-     .example = "--neighbor-clamping on",
+     .standard = "on",
+     .example = "--neighbor-clamping off",
      .choices = on_off,
      .recorded = true,
      FIELD(neighbor_clamping)},

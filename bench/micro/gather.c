@@ -196,7 +196,9 @@ static uint32_t key_of(size_t point)
 
 static void trace(Bench *b, size_t i)
 {
-    sheen_hemisphere_trace(&b->work, &b->points[i].point, key_of(i), b->work.options.bounces, &b->h, &b->stats);
+    static const HotSpots none = {0};
+    sheen_hemisphere_begin(&b->points[i].point, key_of(i), &none, 0.0f, 0.0f, &b->h);
+    sheen_hemisphere_trace(&b->work, &b->points[i].point, b->work.options.bounces, &b->h, &b->stats);
 }
 
 static void direct(Bench *b)

@@ -100,17 +100,31 @@ SheenStatus sheen_irradiance_cache_insert(SheenIrradianceCache *c, const Irradia
     return SHEEN_OK;
 }
 
+// The weight w - 1/a of a record, continuous where its influence ends. A record whose radius had to be enlarged to what
+// the picture resolves keeps its full weight within its own radius; in the ring beyond it a thousandth: that decides
+// only where no other record reaches. A contact's darkness would otherwise paint discs onto the open floor beside it.
+static float influence(const SheenIrradianceCache *c, const IrradianceRecord *r, float d2, float cos_n, bool *sure)
+{
+    const float ring = 1e-3f;
+    float least = 1.0f / c->accuracy, w = record_weight(r->R, d2, cos_n) - least;
+    float own = r->R_sure < r->R ? record_weight(r->R_sure, d2, cos_n) - least : w;
+    *sure = own > 0.0f;
+    return r->R_sure < r->R ? ring * minf(w, least) + maxf(own, 0.0f) : w;
+}
+
 // Takes a record when it serves the point. @param d2  squared distance, below the square of the record's reach
 static void consider(const SheenIrradianceCache *c, uint32_t record, float d2, Vec3 p, Vec3 n, float slack,
                      Contributors *out)
 {
     const IrradianceRecord *r = &c->records[record];
-    float w = record_weight(r->R, d2, v3_dot(n, r->n)) - 1.0f / c->accuracy;
+    bool sure;
+    float w = influence(c, r, d2, v3_dot(n, r->n), &sure);
     if (!(w > 0.0f) || record_in_front(r, p, n, c->accuracy, slack) || out->n == SHEEN_CONTRIBUTORS_MAX) return;
     w = minf(w, weight_max);
     out->record[out->n] = record;
     out->weight[out->n++] = w;
     out->weight_sum += w;
+    out->sure += sure;
 }
 
 // The records of a block that reach the point, the newest first.
@@ -128,7 +142,7 @@ static void consider_block(const SheenIrradianceCache *c, const OctreeBlock *b, 
 
 void sheen_irradiance_cache_find(const SheenIrradianceCache *c, Vec3 p, Vec3 n, float slack, Contributors *out)
 {
-    out->n = 0;
+    out->n = out->sure = 0;
     out->weight_sum = 0.0f;
     const SheenOctree *t = c->octree;
     for (OctreeWalk walk = octree_walk(t); walk.node != SHEEN_OCTREE_END; octree_descend(t, &walk, p))

@@ -38,6 +38,7 @@ typedef struct Contributors {
     uint32_t record[SHEEN_CONTRIBUTORS_MAX];
     float weight[SHEEN_CONTRIBUTORS_MAX]; // w - 1/a > 0: continuous where a record's influence ends
     float weight_sum;                     // 0 when no record covers the point
+    unsigned sure;                        // those that reach the point by their own radius, not only an enlarged one
 } Contributors;
 
 /**

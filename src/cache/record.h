@@ -10,6 +10,8 @@ typedef struct IrradianceRecord {
     Vec3 n;              // unit normal of the side that is lit
     float R;             // clamped harmonic mean distance, metres: the record reaches a R on a plane
     float R_min;         // the least R that later clamping may set
+    float R_sure;        // <= R: within it the record speaks for itself, farther only where no other record does
+    float error;         // relative standard error of E
     Rgb E;               // irradiance, W/m^2
     Vec3 translation[3]; // gradient of E for a shift of p, per channel, W/m^3; in the plane of n
     Vec3 rotation[3];    // gradient of E for a rotation n x n', per channel

@@ -10,7 +10,8 @@
 // Measured on the Cornell box and a staircase: finer gathers or records gain nothing, coarser ones bias
 // (docs/irradiance-caching.md).
 static const float deep_accuracy = 0.5f;
-static const SheenStrata deep_strata = {12, 36};
+enum { DEEP_RINGS = 12, DEEP_SECTORS = 36, DEEP_CELLS = DEEP_RINGS * DEEP_SECTORS };
+static const SheenStrata deep_strata = {DEEP_RINGS, DEEP_SECTORS};
 enum {
     PROBES = 24,    // rays that estimate the radius of a record before it is placed
     FOLLOWED = 12,  // hits of those that are looked at next
@@ -51,6 +52,7 @@ struct SheenDeep {
     DeepCell *cells;                     // [records][strata], freed after the solution
     DeepLight *light[SHEEN_DEEP_LEVELS]; // light[i][record] holds k = bounces - i
     Rgb mean[SHEEN_DEEP_LEVELS];         // over all records: a guess where there is none
+    HotSpots hot;
     SheenMemo *memo;
     uint32_t point_capacity, gathered;
 };
@@ -81,6 +83,13 @@ static uint32_t point_key(const SheenDeep *d, uint32_t index, uint32_t use)
     return hash_combine(hash_combine(d->work->options.seed ^ 0xdee9u, index), use);
 }
 
+// Nothing is known yet of hot spots.
+static void begin_gather(const DiffusePoint *p, uint32_t key, Hemisphere *h)
+{
+    static const HotSpots none = {0};
+    sheen_hemisphere_begin(p, key, &none, 0.0f, 0.0f, h);
+}
+
 static float reach_of(const SheenDeep *d, float R)
 {
     return clampf(deep_accuracy * R, d->reach_min, maxf(reach_max * d->scale, d->reach_min));
@@ -98,7 +107,7 @@ static bool store_point(SheenDeep *d, const DiffusePoint *p, float R)
     }
     d->points[i] = *p;
     float clamped = reach_of(d, R) / deep_accuracy;
-    IrradianceRecord record = {.p = p->p, .n = p->n, .R = clamped, .R_min = clamped};
+    IrradianceRecord record = {.p = p->p, .n = p->n, .R = clamped, .R_min = clamped, .R_sure = clamped};
     return sheen_irradiance_cache_insert(d->cache, &record) == SHEEN_OK;
 }
 
@@ -121,7 +130,8 @@ static SheenStatus place(SheenDeep *d, Queue *q, uint32_t most, Hemisphere *prob
     while (q->head < q->tail && d->cache->n_records < most) {
         DiffusePoint p = q->items[q->head++];
         if (covered(d, p.p, p.n)) continue;
-        sheen_hemisphere_trace(d->work, &p, point_key(d, d->cache->n_records, 0), 1, probe, stats);
+        begin_gather(&p, point_key(d, d->cache->n_records, 0), probe);
+        sheen_hemisphere_trace(d->work, &p, 1, probe, stats);
         if (!store_point(d, &p, sheen_harmonic_mean((unsigned)probe->cells, probe->distance))) return SHEEN_ERR_NOMEM;
         size_t step = probe->n_vertices / FOLLOWED + 1;
         for (size_t i = 0; i < probe->n_vertices; i += step)
@@ -154,7 +164,8 @@ static void gather_task(void *user, size_t item, unsigned worker)
     SheenDeep *d = t->deep;
     uint32_t record = t->first + (uint32_t)item;
     Hemisphere *h = &t->scratch[worker];
-    sheen_hemisphere_trace(d->work, &d->points[record], point_key(d, record, 1), 1, h, &t->stats[worker]);
+    begin_gather(&d->points[record], point_key(d, record, 1), h);
+    sheen_hemisphere_trace(d->work, &d->points[record], 1, h, &t->stats[worker]);
     sheen_hemisphere_add_caustics(d->work, &d->points[record], h, &t->stats[worker]);
     DeepCell *cells = cells_of(d, record);
     for (size_t i = 0; i < h->cells; ++i) {
@@ -299,6 +310,38 @@ static void sweep_task(void *user, size_t item, unsigned worker)
     estimate_world_gradient(&frame, e.rotation, light->rotation);
 }
 
+static float neighbors_mean(const float L[], unsigned j, unsigned k)
+{
+    float sum = 0.0f, n = 0.0f;
+    for (unsigned turn = deep_strata.sectors - 1; turn <= deep_strata.sectors + 1; ++turn)
+        for (unsigned i = j ? j - 1 : 0; i <= j + 1 && i < deep_strata.rings; ++i) {
+            if (i == j && turn == deep_strata.sectors) continue;
+            sum += L[(k + turn) % deep_strata.sectors * deep_strata.rings + i];
+            n += 1.0f;
+        }
+    return sum / n;
+}
+
+// Remembers the small bright places that the gathers found: a stratum that sends many times the mean, and more than
+// its neighbors. What came by a mirror is left out: it does not lie where it is seen.
+static void find_hot_spots(SheenDeep *d, const Rgb E[])
+{
+    const float times_mean = 10.0f, times_neighbors = 3.0f;
+    float L[DEEP_CELLS];
+    for (uint32_t r = 0; r < d->gathered; ++r) {
+        const DeepCell *cells = cells_of(d, r);
+        float sum = 0.0f;
+        for (unsigned i = 0; i < DEEP_CELLS; ++i) sum += L[i] = rgb_luminance(cell_radiance(&cells[i], 1, E, r));
+        for (unsigned i = 0; i < DEEP_CELLS; ++i) {
+            const DeepCell *c = &cells[i];
+            if (!(DEEP_CELLS * L[i] > times_mean * sum) || rgb_is_black(c->weight)) continue;
+            if (L[i] < times_neighbors * neighbors_mean(L, i % deep_strata.rings, i / deep_strata.rings)) continue;
+            float distance = v3_length(v3_sub(c->p, d->points[r].p));
+            if (fabsf(distance - c->distance) < 0.01f * distance) sheen_hot_spots_add(&d->hot, c->p, distance, L[i]);
+        }
+    }
+}
+
 static SheenStatus solve(SheenDeep *d, DeepTask *task)
 {
     size_t n = d->gathered;
@@ -316,6 +359,7 @@ static SheenStatus solve(SheenDeep *d, DeepTask *task)
     }
     for (int i = 0; i < SHEEN_DEEP_LEVELS && status == SHEEN_OK; ++i)
         for (size_t j = 0; j < n; ++j) d->mean[i] = rgb_mad(d->mean[i], 1.0f / (float)n, d->light[i][j].E);
+    if (status == SHEEN_OK) find_hot_spots(d, E[d->bounces & 1]);
     free(E[0]);
     free(E[1]);
     return status;
@@ -458,6 +502,11 @@ Rgb sheen_deep_answer(const SheenDeep *d, const DeepQuery *query)
 float sheen_deep_near(const SheenDeep *d)
 {
     return near_cells * cell_min * d->scale;
+}
+
+const HotSpots *sheen_deep_hot_spots(const SheenDeep *d)
+{
+    return &d->hot;
 }
 
 uint32_t sheen_deep_records(const SheenDeep *d)

@@ -5,6 +5,7 @@
 #define SHEEN_INTEGRATOR_DEEP_H
 
 #include "integrator/follow.h"
+#include "integrator/hot_spot.h"
 #include "integrator/memo.h"
 #include "integrator/work.h"
 
@@ -47,6 +48,9 @@ Rgb sheen_deep_answer(const SheenDeep *deep, const DeepQuery *query);
 
 /** Distance below which a gather's hit is too near for deep records: one more real vertex is worth its ray. Metres. */
 float sheen_deep_near(const SheenDeep *deep);
+
+/** The small bright places that the records' gathers found. */
+const HotSpots *sheen_deep_hot_spots(const SheenDeep *deep);
 
 uint32_t sheen_deep_records(const SheenDeep *deep);
 

@@ -10,6 +10,10 @@
 // The reach a R of a record on a plane, in pixels. Below the least nothing is seen, above the most one record's noise
 // would spread over a wide disc.
 static const float reach_min_px = 4.0f, reach_max_px = 25.0f;
+// The least radius within which a record has its full weight, in units of its enlarged one.
+static const float sure_min = 0.1f;
+// A gather spends more rays until the standard error of its irradiance is expected to be so small.
+static const float gather_error = 0.025f;
 enum {
     LIGHT_SAMPLES = 1,  // at each hit of a gather: the best value per ray of 1, 2 and 4
     EXTENSIONS_MAX = 2, // vertices by which near hits are moved on
@@ -73,7 +77,7 @@ static void add_deep_light(const SheenFill *f, Hemisphere *h)
         size_t n = h->n_vertices - first < BLOCK ? h->n_vertices - first : BLOCK;
         for (size_t i = 0; i < n; ++i)
             queries[i] = sheen_deep_ask(f->deep, v[i].point.p, v[i].point.n, v[i].distance, (int)v[i].bounces - 1,
-                                        hash_combine(h->key, v[i].cell));
+                                        hash_combine(h->key, v[i].ray));
         for (size_t i = 0; i < n; ++i) {
             Rgb E = sheen_deep_answer(f->deep, &queries[i]);
             h->L[v[i].cell] = rgb_add(h->L[v[i].cell], rgb_mul(v[i].weight, E));
@@ -81,9 +85,9 @@ static void add_deep_light(const SheenFill *f, Hemisphere *h)
     }
 }
 
-static void gather_light(const SheenFill *f, const DiffusePoint *p, uint32_t key, Hemisphere *h, SheenStats *stats)
+// Light at the vertices of the rays traced last: direct, and from deeper bounces.
+static void light_vertices(const SheenFill *f, Hemisphere *h, SheenStats *stats)
 {
-    sheen_hemisphere_trace(f->work, p, key, f->work->options.bounces, h, stats);
     sheen_hemisphere_direct(f->work, 0, LIGHT_SAMPLES, h, stats);
     bool paths = f->work->options.secondary == SHEEN_SECONDARY_PATH;
     float near = paths ? INFINITY : f->deep ? sheen_deep_near(f->deep) : 0.0f;
@@ -94,6 +98,24 @@ static void gather_light(const SheenFill *f, const DiffusePoint *p, uint32_t key
         sheen_hemisphere_direct(f->work, before - moved, 1, h, stats);
     }
     add_deep_light(f, h);
+}
+
+// Mean radiance about a point as the deep records know it, in luminance.
+static float expected_mean(const SheenDeep *deep, const DiffusePoint *p, unsigned bounces)
+{
+    DeepQuery query = sheen_deep_ask(deep, p->p, p->n, 0.0f, (int)bounces - 1, 0);
+    return SHEEN_INV_PI * rgb_luminance(sheen_deep_answer(deep, &query));
+}
+
+static void gather_light(const SheenFill *f, const DiffusePoint *p, uint32_t key, Hemisphere *h, SheenStats *stats)
+{
+    static const HotSpots none = {0};
+    unsigned bounces = f->work->options.bounces;
+    float mean = f->deep ? expected_mean(f->deep, p, bounces) : 0.0f;
+    sheen_hemisphere_begin(p, key, f->deep ? sheen_deep_hot_spots(f->deep) : &none, mean, gather_error, h);
+    sheen_hemisphere_trace(f->work, p, bounces, h, stats);
+    light_vertices(f, h, stats);
+    if (sheen_hemisphere_refine(f->work, p, bounces, gather_error, h, stats)) light_vertices(f, h, stats);
     sheen_hemisphere_add_caustics(f->work, p, h, stats);
 }
 
@@ -109,6 +131,7 @@ static void set_radius(const SheenOptions *o, const IrradianceEstimate *e, float
         if (g > 0.0f) R = minf(R, rgb_luminance(e->E) / g);
     }
     r->R = clampf(R, r->R_min, R_max);
+    r->R_sure = maxf(R, sure_min * r->R_min);
     // Where the pixel allows no smaller radius the gradient would overshoot: it is scaled down by as much.
     if (!(R < r->R_min)) return;
     float scale = maxf(R, 0.0f) / r->R_min;
@@ -126,7 +149,7 @@ static void make_record(const SheenFill *f, const ShadingPoint *p, uint32_t key,
         }
     IrradianceEstimate e;
     sheen_estimate_irradiance(h->strata, h->directions, h->L, h->distance, &e);
-    *r = (IrradianceRecord){.p = p->point.p, .n = p->point.n, .E = e.E};
+    *r = (IrradianceRecord){.p = p->point.p, .n = p->point.n, .error = h->error, .E = e.E};
     if (f->work->options.gradients == SHEEN_GRADIENTS_STRATIFIED) {
         estimate_world_gradient(&h->frame, e.translation, r->translation);
         estimate_world_gradient(&h->frame, e.rotation, r->rotation);
@@ -162,7 +185,8 @@ static void cover_task(void *user, size_t item, unsigned worker)
         const ShadingPoint *p = &w->points[w->open[i]];
         Contributors c;
         sheen_irradiance_cache_find(w->fill->cache, p->point.p, p->point.n, 0.0f, &c);
-        w->covered[i] = c.n > 0 || w->made_at[w->open[i]];
+        // A single record whose radius was enlarged may stand in a slit that the point is not in.
+        w->covered[i] = c.sure > 0 || c.n > 1 || w->made_at[w->open[i]];
         if (w->covered[i]) continue;
         float most = reach_max_px * p->footprint;
         float radius = sheen_irradiance_cache_expect_radius(w->fill->cache, p->point.p);

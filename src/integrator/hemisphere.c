@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrator/hemisphere.h"
 
+#include "gather/allocate.h"
 #include "math/warp.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 // Keys of the random numbers of a gather, so that no two uses share one.
-enum { KEY_STRATA = 1, KEY_LIGHT = 2, KEY_EXTEND = 3, KEY_OWN = 5, KEY_CAUSTIC = 6, KEY_SPECULAR = 7 };
+enum { KEY_STRATA = 1, KEY_LIGHT = 2, KEY_EXTEND = 3, KEY_FURTHER = 4, KEY_OWN = 5, KEY_CAUSTIC = 6, KEY_SPECULAR = 7 };
 
 // Rays of a stratum that find lamps through mirrors and glass; at most as many in all as there are strata.
 enum { CAUSTIC_RAYS = 8 };
@@ -21,6 +22,10 @@ void sheen_hemisphere_free(Hemisphere *h)
     free(h->mirrored);
     free(h->through);
     free(h->sorted);
+    free(h->extra);
+    free(h->further);
+    free(h->value);
+    free(h->deviation);
     free(h->distance);
     free(h->vertices);
     free(h->moved);
@@ -35,7 +40,7 @@ void sheen_hemisphere_free(Hemisphere *h)
 
 bool sheen_hemisphere_reserve(Hemisphere *h, SheenStrata strata)
 {
-    size_t n = strata_count(strata);
+    size_t n = strata_count(strata), rays = SHEEN_FURTHER_MAX * n;
     if (n > h->capacity) {
         sheen_hemisphere_free(h);
         h->directions = malloc(n * sizeof *h->directions);
@@ -45,17 +50,22 @@ bool sheen_hemisphere_reserve(Hemisphere *h, SheenStrata strata)
         h->mirrored = malloc(n * sizeof *h->mirrored);
         h->through = malloc(n * sizeof *h->through);
         h->sorted = malloc(n * sizeof *h->sorted);
+        h->extra = malloc(n * sizeof *h->extra);
+        h->further = malloc(rays * sizeof *h->further);
+        h->value = malloc(n * sizeof *h->value);
+        h->deviation = malloc(n * sizeof *h->deviation);
         h->distance = malloc(n * sizeof *h->distance);
-        h->vertices = malloc(n * sizeof *h->vertices);
-        h->moved = malloc(n * sizeof *h->moved);
-        h->rays = malloc(n * sizeof *h->rays);
-        h->hits = malloc(n * sizeof *h->hits);
-        h->points = malloc(n * sizeof *h->points);
-        h->numbers = malloc(n * sizeof *h->numbers);
-        h->irradiance = malloc(n * sizeof *h->irradiance);
+        h->vertices = malloc(rays * sizeof *h->vertices);
+        h->moved = malloc(rays * sizeof *h->moved);
+        h->rays = malloc(rays * sizeof *h->rays);
+        h->hits = malloc(rays * sizeof *h->hits);
+        h->points = malloc(rays * sizeof *h->points);
+        h->numbers = malloc(rays * sizeof *h->numbers);
+        h->irradiance = malloc(rays * sizeof *h->irradiance);
         if (!h->directions || !h->L || !h->caustic || !h->specular || !h->mirrored || !h->through || !h->sorted ||
-            !h->distance || !h->vertices || !h->moved || !h->rays || !h->hits || !h->points || !h->numbers ||
-            !h->irradiance || !sheen_direct_reserve(&h->direct, n)) {
+            !h->extra || !h->further || !h->value || !h->deviation || !h->distance || !h->vertices || !h->moved ||
+            !h->rays || !h->hits || !h->points || !h->numbers || !h->irradiance ||
+            !sheen_direct_reserve(&h->direct, rays)) {
             sheen_hemisphere_free(h);
             return false;
         }
@@ -84,7 +94,7 @@ static Rgb caustic_of(const SheenWork *work, const Followed *f)
 
 // What one ray of the gather, or of an extension of one of its vertices, ended on.
 // @param weight  radiance in the cell per radiance along the ray
-static void receive(const SheenWork *work, const Followed *f, Rgb weight, uint32_t cell, unsigned bounces,
+static void receive(const SheenWork *work, const Followed *f, Rgb weight, uint32_t cell, uint32_t ray, unsigned bounces,
                     Hemisphere *h)
 {
     Rgb through = rgb_mul(weight, f->throughput);
@@ -94,7 +104,7 @@ static void receive(const SheenWork *work, const Followed *f, Rgb weight, uint32
     h->caustic[cell] = rgb_add(h->caustic[cell], rgb_mul(weight, caustic_of(work, f)));
     if (!f->scatters || bounces == 0) return;
     h->vertices[h->n_vertices++] = (GatherVertex){
-        f->point, rgb_scale(rgb_mul(through, f->point.reflectance), SHEEN_INV_PI), cell, f->distance, bounces};
+        f->point, rgb_scale(rgb_mul(through, f->point.reflectance), SHEEN_INV_PI), cell, ray, f->distance, bounces};
 }
 
 void sheen_hemisphere_directions(uint32_t key, Hemisphere *h)
@@ -133,14 +143,21 @@ static void resample_caustics(const SheenWork *work, const DiffusePoint *point, 
     }
 }
 
-void sheen_hemisphere_trace(const SheenWork *work, const DiffusePoint *point, uint32_t key, unsigned bounces,
-                            Hemisphere *h, SheenStats *stats)
+void sheen_hemisphere_begin(const DiffusePoint *point, uint32_t key, const HotSpots *spots, float mean, float error,
+                            Hemisphere *h)
 {
     h->key = key;
     h->frame = frame_from_normal(point->n);
+    h->error = 0.0f;
+    sheen_guide_choose(spots, point->p, &h->frame, h->strata, mean, error, &h->guide);
+}
+
+void sheen_hemisphere_trace(const SheenWork *work, const DiffusePoint *point, unsigned bounces, Hemisphere *h,
+                            SheenStats *stats)
+{
     h->n_vertices = 0;
-    sheen_hemisphere_directions(key, h);
-    uint32_t specular_key = hash_combine(key, KEY_SPECULAR);
+    sheen_hemisphere_directions(h->key, h);
+    uint32_t specular_key = hash_combine(h->key, KEY_SPECULAR);
     for (uint32_t i = 0; i < h->cells; ++i) h->rays[i] = leave(point, frame_to_world(&h->frame, h->directions[i]));
     sheen_accel_intersect_many(work->accel, SHEEN_COHERENT, h->cells, h->rays, h->hits);
     stats->rays_gather += h->cells;
@@ -152,13 +169,94 @@ void sheen_hemisphere_trace(const SheenWork *work, const DiffusePoint *point, ui
         Followed f;
         sheen_follow(work, &h->rays[i], &h->hits[i], &sampler, &stats->rays_specular, &f);
         h->distance[i] = maxf(f.distance, 1e-20f);
-        receive(work, &f, rgb_gray(1.0f), i, bounces, h);
+        receive(work, &f, rgb_gray(1.0f), i, i, bounces, h);
         if (f.specular > 0) h->through[n_through++] = i;
     }
     // Without a light to ask there is no lamp and no hard part of the sky.
     if (sheen_lights_count(work->lights) == 0) n_through = 0;
     resample_caustics(work, point, h->through, n_through, h, stats);
 }
+
+// ---- refinement -------------------------------------------------------------------------------------------------
+
+// The share of one ray along d, in a cell with `rays` of its own, where the cones send more.
+static float ray_weight(const Hemisphere *h, Vec3 d, uint32_t rays)
+{
+    float density = (float)h->cells * SHEEN_INV_PI * d.z; // of one ray in each cell, per steradian
+    return density / ((float)rays * density + guide_density(&h->guide, d));
+}
+
+static uint32_t cell_along(SheenStrata s, Vec3 d)
+{
+    float turn = atan2f(d.y, d.x) * (0.5f * SHEEN_INV_PI);
+    uint32_t k = (uint32_t)((turn < 0.0f ? turn + 1.0f : turn) * (float)s.sectors);
+    uint32_t j = (uint32_t)((d.x * d.x + d.y * d.y) * (float)s.rings);
+    return (k < s.sectors ? k : s.sectors - 1) * s.rings + (j < s.rings ? j : s.rings - 1);
+}
+
+// Point e of a Kronecker sequence. Source: roberts2018-quasirandom.
+static Vec2 further_number(const Hemisphere *h, uint32_t use, uint32_t e)
+{
+    uint32_t r = hash_combine(hash_combine(h->key, KEY_FURTHER), use);
+    return v2(hash_to_unit(r + e * 0xc13fa9a9u), hash_to_unit(hash_u32(r) + e * 0x91e10da6u));
+}
+
+static size_t add_cones(Hemisphere *h)
+{
+    size_t n = 0;
+    for (uint32_t c = 0; c < h->guide.n; ++c)
+        for (uint32_t e = 0; e < h->guide.cones[c].rays && n < SHEEN_FURTHER_MAX * h->cells; ++e) {
+            Vec3 d = sheen_cone_direction(&h->guide.cones[c], further_number(h, (uint32_t)h->cells + c, e));
+            if (d.z > 1e-4f) h->further[n++] = (GatherRay){.d = d, .cell = cell_along(h->strata, d)};
+        }
+    return n;
+}
+
+// Lists the further rays and gives all their weights; the first rays' light takes its own.
+static size_t plan(float error, Hemisphere *h)
+{
+    for (size_t i = 0; i < h->cells; ++i)
+        h->value[i] = ray_weight(h, h->directions[i], 1) * rgb_luminance(rgb_add(h->L[i], h->caustic[i]));
+    size_t n = add_cones(h);
+    size_t most = SHEEN_FURTHER_MAX * h->cells;
+    size_t more =
+        sheen_strata_allocate(h->strata, h->value, error, (uint32_t)(most - n), h->deviation, h->extra, &h->error);
+    if (n + more == 0) return 0;
+    for (uint32_t i = 0; i < h->cells; ++i) {
+        float weight = ray_weight(h, h->directions[i], 1 + h->extra[i]);
+        h->L[i] = rgb_scale(h->L[i], weight);
+        h->caustic[i] = rgb_scale(h->caustic[i], weight);
+        for (uint32_t e = 0; e < h->extra[i]; ++e) {
+            Vec2 u = further_number(h, i, e);
+            Vec3 d = sheen_strata_direction(h->strata, i % h->strata.rings, i / h->strata.rings, u);
+            h->further[n++] = (GatherRay){.d = d, .cell = i};
+        }
+    }
+    for (size_t i = 0; i < n; ++i)
+        h->further[i].weight = ray_weight(h, h->further[i].d, 1 + h->extra[h->further[i].cell]);
+    return n;
+}
+
+size_t sheen_hemisphere_refine(const SheenWork *work, const DiffusePoint *point, unsigned bounces, float error,
+                               Hemisphere *h, SheenStats *stats)
+{
+    size_t n = plan(error, h);
+    h->n_vertices = 0;
+    for (size_t i = 0; i < n; ++i) h->rays[i] = leave(point, frame_to_world(&h->frame, h->further[i].d));
+    sheen_accel_intersect_many(work->accel, SHEEN_COHERENT, n, h->rays, h->hits);
+    stats->rays_gather += n;
+    uint32_t specular_key = hash_combine(h->key, KEY_SPECULAR);
+    for (uint32_t i = 0; i < n; ++i) {
+        uint32_t ray = (uint32_t)h->cells + i;
+        SheenSampler sampler = sampler_make(specular_key, ray);
+        Followed f;
+        sheen_follow(work, &h->rays[i], &h->hits[i], &sampler, &stats->rays_specular, &f);
+        receive(work, &f, rgb_gray(h->further[i].weight), h->further[i].cell, ray, bounces, h);
+    }
+    return n;
+}
+
+// ---- light at the vertices --------------------------------------------------------------------------------------
 
 size_t sheen_hemisphere_extend(const SheenWork *work, float near, Hemisphere *h, SheenStats *stats)
 {
@@ -172,24 +270,29 @@ size_t sheen_hemisphere_extend(const SheenWork *work, float near, Hemisphere *h,
             if (kept++ < i) h->vertices[kept - 1] = v;
             continue;
         }
-        SheenSampler sampler = sampler_make(hash_combine(key, v.bounces), v.cell);
+        SheenSampler sampler = sampler_make(hash_combine(key, v.bounces), v.ray);
         Frame frame = frame_from_normal(v.point.n);
-        Vec3 d = frame_to_world(&frame, warp_cosine_hemisphere(sampler_2d(&sampler)));
-        h->rays[n_rays] = leave(&v.point, d);
+        float choice = sampler_1d(&sampler);
+        Vec3 d;
+        float weight = sheen_guide_direction(&h->guide, v.point.p, &frame, choice, sampler_2d(&sampler), &d);
+        if (!(weight > 0.0f)) continue;
+        // One ray estimates the irradiance at the vertex by pi L, times its weight.
+        v.weight = rgb_scale(v.weight, SHEEN_PI * weight);
+        h->rays[n_rays] = leave(&v.point, frame_to_world(&frame, d));
         moved[n_rays++] = v;
     }
+    size_t taken = h->n_vertices - kept;
     h->n_vertices = kept;
     sheen_accel_intersect_many(work->accel, SHEEN_INCOHERENT, n_rays, h->rays, h->hits);
     stats->rays_gather += n_rays;
     for (size_t i = 0; i < n_rays; ++i) {
         const GatherVertex *v = &moved[i];
-        SheenSampler sampler = sampler_make(hash_combine(h->key, KEY_SPECULAR + v->bounces), v->cell);
+        SheenSampler sampler = sampler_make(hash_combine(h->key, KEY_SPECULAR + v->bounces), v->ray);
         Followed f;
         sheen_follow(work, &h->rays[i], &h->hits[i], &sampler, &stats->rays_specular, &f);
-        // One cosine-weighted ray estimates the irradiance at the vertex by pi L.
-        receive(work, &f, rgb_scale(v->weight, SHEEN_PI), v->cell, v->bounces - 1, h);
+        receive(work, &f, v->weight, v->cell, v->ray, v->bounces - 1, h);
     }
-    return n_rays;
+    return taken;
 }
 
 // A Kronecker sequence over the gather's light samples, in fixed point: neighboring strata ask distant parts of the
@@ -211,7 +314,7 @@ void sheen_hemisphere_direct(const SheenWork *work, size_t first, uint32_t sampl
         h->irradiance[i] = rgb_gray(0.0f);
     }
     for (uint32_t s = 0; s < samples; ++s) {
-        for (size_t i = 0; i < n; ++i) h->numbers[i] = light_numbers(h->key, v[i].bounces, v[i].cell * samples + s);
+        for (size_t i = 0; i < n; ++i) h->numbers[i] = light_numbers(h->key, v[i].bounces, v[i].ray * samples + s);
         stats->rays_shadow +=
             sheen_direct_add(work, n, h->points, h->numbers, 1.0f / (float)samples, &h->direct, h->irradiance);
     }

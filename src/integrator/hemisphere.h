@@ -5,21 +5,34 @@
 
 #include "gather/estimate.h"
 #include "integrator/direct.h"
+#include "integrator/hot_spot.h"
 
 /** A scattering point that a gather sees: it sends weight times its irradiance toward the gather's point. */
 typedef struct GatherVertex {
     DiffusePoint point;
     Rgb weight;       // radiance in the cell per irradiance at the vertex, 1/sr
     uint32_t cell;    // stratum that it belongs to
+    uint32_t ray;     // number in the gather: keys the random numbers
     float distance;   // length of the way from the vertex before, metres
     unsigned bounces; // b: the light wanted here is direct light and b - 1 bounces; 0: the sky alone
 } GatherVertex;
+
+/** Further rays of a gather are at most so many times its strata. */
+enum { SHEEN_FURTHER_MAX = 3 };
+
+/** A ray of a gather beside the first of each stratum. */
+typedef struct GatherRay {
+    Vec3 d; // local
+    uint32_t cell;
+    float weight; // of its radiance in the cell's mean
+} GatherRay;
 
 /** Buffers of one worker, and the gather that they hold. */
 typedef struct Hemisphere {
     SheenStrata strata;
     Frame frame;             // the local frame of `directions`
     uint32_t key;            // of all random numbers of this gather
+    Guide guide;             // hot spots, for rays beside the first of each stratum
     Vec3 *directions;        // [cells] local
     Rgb *L;                  // [cells] radiance so far
     Rgb *caustic;            // [cells] radiance of emitters seen through mirrors and glass
@@ -27,11 +40,15 @@ typedef struct Hemisphere {
     float *distance;         // [cells] to what sends it; INFINITY for the sky
     GatherVertex *vertices;
     size_t n_vertices;
+    float error; // relative standard error of the irradiance that sheen_hemisphere_refine expects
     // scratch
-    Rgb *mirrored;         // [cells]
-    uint32_t *through;     // cells whose ray came to a mirror or a pane
-    uint32_t caustic_rays; // rays in each of them
-    float *sorted;         // [cells]
+    uint32_t *extra;          // [cells] rays beside the first
+    GatherRay *further;       // [SHEEN_FURTHER_MAX cells] those, and the ones into cones
+    float *value, *deviation; // [cells]
+    Rgb *mirrored;            // [cells]
+    uint32_t *through;        // cells whose ray came to a mirror or a pane
+    uint32_t caustic_rays;    // rays in each of them
+    float *sorted;            // [cells]
     GatherVertex *moved;
     Ray *rays;
     Hit *hits;
@@ -49,17 +66,34 @@ void sheen_hemisphere_free(Hemisphere *h);
 /** Fills h->directions: the jittered strata of a gather, a function of its key alone. */
 void sheen_hemisphere_directions(uint32_t key, Hemisphere *h);
 
+/** Begins a gather at a point: its frame, its key, and the hot spots that matter there. */
+void sheen_hemisphere_begin(const DiffusePoint *point, uint32_t key, const HotSpots *spots, float mean, float error,
+                            Hemisphere *h);
+
 /**
  * Traces the fan over a point, in sector order, and fills everything but the light at the vertices.
  * Directions below the geometric surface, which a shading normal tilts there, are mirrored to above it.
  * @param bounces  b of the vertices
  */
-void sheen_hemisphere_trace(const SheenWork *work, const DiffusePoint *point, uint32_t key, unsigned bounces,
-                            Hemisphere *h, SheenStats *stats);
+void sheen_hemisphere_trace(const SheenWork *work, const DiffusePoint *point, unsigned bounces, Hemisphere *h,
+                            SheenStats *stats);
 
 /**
- * Moves the vertices nearer than `near` to their predecessor on by one cosine-weighted ray, after their direct light
- * has been added to L; what the ray finds becomes a vertex in their place. The others keep their place and order.
+ * Chooses where more rays are worth most, and traces them: into the cones about hot spots, and into strata whose
+ * neighbors differ. Both are told by other rays than those that they refine. L and caustic become means over all rays,
+ * weighed by the balance heuristic (veach1995-combining): a ray along d has the weight of the strata's density over
+ * that of all rays that may go there. The new vertices, which replace the old, wait for light.
+ * @param bounces  b of the vertices
+ * @param error    relative standard error of the irradiance that is enough
+ * @return the number of rays; at most SHEEN_FURTHER_MAX times the cells
+ */
+size_t sheen_hemisphere_refine(const SheenWork *work, const DiffusePoint *point, unsigned bounces, float error,
+                               Hemisphere *h, SheenStats *stats);
+
+/**
+ * Moves the vertices nearer than `near` to their predecessor on by one ray, cosine-weighted or toward a hot spot, after
+ * their direct light has been added to L; what the ray finds becomes a vertex in their place. The others keep their
+ * place and order.
  * @param near  metres; INFINITY moves all
  * @return the number of vertices moved
  */

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The `irradiance` integrator: visibility, fill, shade.
 #include "base/clock.h"
+#include "cache/smooth.h"
 #include "integrator/deep.h"
 #include "integrator/fill.h"
 #include "integrator/shade.h"
@@ -110,6 +111,8 @@ static SheenStatus fill_cache(const SheenWork *work, SheenIrradianceCache *cache
         status = create_deep(work, points, n, stats, deep);
     if (status == SHEEN_OK) status = sheen_fill_create(work, *deep, cache, fill);
     if (status == SHEEN_OK) status = sheen_fill_run(*fill, points, n, stats);
+    if (status == SHEEN_OK)
+        status = sheen_irradiance_cache_smooth(cache, &work->scene->bounds, work->pool, work->cancel);
     stats->time_fill += sheen_clock_seconds() - t1;
     free(points);
     return status;

@@ -6,11 +6,11 @@ SheenOptions sheen_options_default(void)
     return (SheenOptions){
         .spp = 16,
         .bounces = 8,
-        .accuracy = 0.15f,
-        .gather_rays = 1024,
+        .accuracy = 0.2f,
+        .gather_rays = 400,
         .gradients = SHEEN_GRADIENTS_STRATIFIED,
         .secondary = SHEEN_SECONDARY_CACHE,
-        .neighbor_clamping = false,
+        .neighbor_clamping = true,
         .gradient_clamping = true,
     };
 }

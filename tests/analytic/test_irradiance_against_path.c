@@ -18,7 +18,8 @@ static SheenRenderSettings sharp_settings(uint32_t bounces)
 {
     SheenRenderSettings s = small_settings(bounces);
     s.options.spp = 16;
-    s.options.gather_rays = 256;
+    s.options.gather_rays = 512;
+    s.options.accuracy = 0.15f;
     return s;
 }
 

@@ -47,7 +47,7 @@ static void insert(SheenIrradianceCache *c, const IrradianceRecord *r)
 }
 static IrradianceRecord flat_record(Vec3 p, Vec3 n, float R, float E)
 {
-    return (IrradianceRecord){.p = p, .n = n, .R = R, .R_min = 0.0f, .E = rgb_gray(E)};
+    return (IrradianceRecord){.p = p, .n = n, .R = R, .R_min = 0.0f, .R_sure = R, .E = rgb_gray(E)};
 }
 
 // ---- one record -------------------------------------------------------------------------------------------------

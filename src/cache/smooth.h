@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Records learn from their neighbors: the noise of the gathers is averaged out before it is seen.
+#ifndef SHEEN_CACHE_SMOOTH_H
+#define SHEEN_CACHE_SMOOTH_H
+
+#include "base/pool.h"
+#include "cache/irradiance_cache.h"
+
+/**
+ * Replaces the irradiance and the gradients of each record by means over what it and its neighbors, as far as twice its
+ * reach, say there: each weighed by the inverse of its variance, which is that of its gather and, for a neighbor, the
+ * square of the interpolation error to be expected. A record without noise stays as it is.
+ * @param cancel  may be NULL
+ * Errors: SHEEN_ERR_NOMEM, SHEEN_ERR_CANCELLED; the cache is unchanged then. The result does not depend on the pool.
+ */
+SHEEN_NODISCARD SheenStatus sheen_irradiance_cache_smooth(SheenIrradianceCache *cache, const Bounds *bounds,
+                                                          SheenPool *pool, const atomic_bool *cancel);
+
+#endif
