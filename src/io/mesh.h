@@ -59,4 +59,14 @@ SHEEN_NODISCARD SheenStatus sheen_obj_parse(const char *text, size_t size, const
 SHEEN_NODISCARD SheenStatus sheen_ply_parse(const char *data, size_t size, const char *name, SheenArena *arena,
                                             const SheenLog *log, MeshData *out);
 
+/**
+ * Reads one mesh of a file of Mitsuba's serialized meshes, version 3 or 4; vertex colours are skipped.
+ * @param index         which of the file's meshes, from 0
+ * @param face_normals  whether the mesh is to be shaded flat
+ * Errors: SHEEN_ERR_PARSE and SHEEN_ERR_UNSUPPORTED (`FILE: ...`), SHEEN_ERR_NOMEM.
+ */
+SHEEN_NODISCARD SheenStatus sheen_serialized_parse(const char *data, size_t size, const char *name, uint32_t index,
+                                                   SheenArena *arena, const SheenLog *log, MeshData *out,
+                                                   bool *face_normals);
+
 #endif

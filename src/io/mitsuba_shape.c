@@ -50,30 +50,43 @@ static bool place_mesh(Mitsuba *m, SheenXml *e, MeshData *mesh, bool flat, Sheen
     return true;
 }
 
-typedef SheenStatus ParseFn(const char *data, size_t size, const char *name, SheenArena *arena, const SheenLog *log,
-                            MeshData *out);
+typedef enum MeshFormat { MESH_OBJ, MESH_PLY, MESH_SERIALIZED } MeshFormat;
 
-static bool read_mesh_file(Mitsuba *m, SheenXml *e, ParseFn *parse, bool v_is_up, SheenShape *out)
+/** Reads the file that an element names. @param face_normals  whether the file asks for them */
+static bool read_mesh(Mitsuba *m, const SheenXml *e, MeshFormat format, MeshData *mesh, bool *face_normals)
 {
     const char *path = sheen_mi_path(m, e, "filename", "mesh");
-    if (!path) return false;
+    int64_t index = format == MESH_SERIALIZED ? sheen_mi_integer(m, e, "shape_index", 0) : 0;
+    if (index < 0 || index >= SHEEN_NONE) sheen_mi_fail(m, SHEEN_ERR_PARSE, e, "'shape_index' is out of range");
+    if (m->status) return false;
     uint8_t *data;
     size_t size;
-    MeshData mesh;
     SheenStatus s = sheen_file_read(path, m->log, &data, &size);
     if (!s) {
-        s = parse((const char *)data, size, path, m->arena, m->log, &mesh);
+        const char *text = (const char *)data;
+        *face_normals = false;
+        if (format == MESH_OBJ)
+            s = sheen_obj_parse(text, size, path, m->arena, m->log, mesh);
+        else if (format == MESH_PLY)
+            s = sheen_ply_parse(text, size, path, m->arena, m->log, mesh);
+        else
+            s = sheen_serialized_parse(text, size, path, (uint32_t)index, m->arena, m->log, mesh, face_normals);
         free(data);
     }
-    if (s) {
-        if (!m->status) m->status = s; // reported with the file's own place
-        return false;
-    }
+    if (s) m->status = s; // reported with the file's own place
+    return !s;
+}
+
+static bool read_mesh_file(Mitsuba *m, SheenXml *e, MeshFormat format, SheenShape *out)
+{
+    MeshData mesh;
+    bool face_normals, v_is_up = format == MESH_OBJ;
+    if (!read_mesh(m, e, format, &mesh, &face_normals)) return false;
     // Mitsuba's v runs downward in a picture. It turns the v of OBJ, which runs upward as ours does, and not that of
-    // PLY.
+    // the other formats.
     if (sheen_mi_bool(m, e, "flip_tex_coords", v_is_up) != v_is_up) v_is_up = !v_is_up;
     if (!v_is_up) flip_v(&mesh);
-    bool face_normals = sheen_mi_bool(m, e, "face_normals", false);
+    face_normals = sheen_mi_bool(m, e, "face_normals", face_normals);
     if (face_normals) mesh.n = NULL;
     sheen_mi_ignore(e, "collapse shape_index");
     if (sheen_mi_child(e, "max_smooth_angle")) sheen_xml_info(m->log, e, "maxSmoothAngle is ignored");
@@ -88,12 +101,17 @@ static bool read_mesh_file(Mitsuba *m, SheenXml *e, ParseFn *parse, bool v_is_up
 
 static bool read_obj(Mitsuba *m, SheenXml *e, SheenShape *out)
 {
-    return read_mesh_file(m, e, sheen_obj_parse, true, out);
+    return read_mesh_file(m, e, MESH_OBJ, out);
 }
 
 static bool read_ply(Mitsuba *m, SheenXml *e, SheenShape *out)
 {
-    return read_mesh_file(m, e, sheen_ply_parse, false, out);
+    return read_mesh_file(m, e, MESH_PLY, out);
+}
+
+static bool read_serialized(Mitsuba *m, SheenXml *e, SheenShape *out)
+{
+    return read_mesh_file(m, e, MESH_SERIALIZED, out);
 }
 
 static bool read_rectangle(Mitsuba *m, SheenXml *e, SheenShape *out)
@@ -166,8 +184,8 @@ static bool read_disk(Mitsuba *m, SheenXml *e, SheenShape *out)
 // ---- all shapes -------------------------------------------------------------------------------------------------
 
 static const Plugin plugins[] = {
-    {"obj", read_obj},   {"ply", read_ply},       {"rectangle", read_rectangle},
-    {"cube", read_cube}, {"sphere", read_sphere}, {"disk", read_disk},
+    {"obj", read_obj},       {"ply", read_ply},   {"rectangle", read_rectangle},   {"cube", read_cube},
+    {"sphere", read_sphere}, {"disk", read_disk}, {"serialized", read_serialized},
 };
 
 static void add_area_light(Mitsuba *m, SheenXml *emitter, uint32_t shape, bool in_group)
