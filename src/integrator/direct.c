@@ -53,7 +53,7 @@ uint64_t sheen_direct_add(const SheenWork *work, size_t n, const DiffusePoint po
         else
             scratch->rays[i] = (Ray){points[i].p, -1.0f, points[i].n}; // skipped
     }
-    sheen_accel_occluded_many(work->accel, SHEEN_COHERENT, n, scratch->rays, scratch->occluded);
+    sheen_accel_occluded_many(work->accel, SHEEN_INCOHERENT, n, scratch->rays, scratch->occluded);
     for (size_t i = 0; i < n; ++i)
         if (!scratch->occluded[i]) E[i] = rgb_mad(E[i], scale, scratch->irradiance[i]);
     return rays;
