@@ -236,7 +236,7 @@ static double bare_shadow(Bench *b, size_t i)
     DirectScratch *d = &b->h.direct;
     memcpy(d->rays, b->recorded[i].shadow, n * sizeof *d->rays);
     double start = seconds();
-    sheen_accel_occluded_many(b->accel, SHEEN_COHERENT, n, d->rays, d->occluded);
+    sheen_accel_occluded_many(b->accel, SHEEN_INCOHERENT, n, d->rays, d->occluded);
     double end = seconds();
     if (n > 0) keep(&b->sum, (double)d->occluded[0]);
     return end - start;
