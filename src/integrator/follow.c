@@ -12,8 +12,7 @@ static inline bool set_point(const SurfacePoint *s, bool front, Rgb reflectance,
 bool sheen_diffuse_point(const SurfacePoint *s, const Bsdf *bsdf, Vec3 wo, DiffusePoint *out)
 {
     bool front = v3_dot(wo, s->ng) >= 0.0f;
-    if (!front && !bsdf->material->two_sided) return false;
-    return set_point(s, front, bsdf->reflectance, out);
+    return set_point(s, front, sheen_bsdf_diffuse(bsdf, v3(0.0f, 0.0f, front ? 1.0f : -1.0f), NULL), out);
 }
 
 static float unit_or_zero(float x) // a NaN becomes 0
@@ -54,6 +53,7 @@ void sheen_follow(const SheenWork *work, const Ray *ray, const Hit *hit, SheenSa
             return;
         }
         Bsdf bsdf = sheen_bsdf_at(work->scene, &s);
+        sheen_bsdf_simplify(&bsdf);
         if (!sheen_bsdf_is_delta(&bsdf)) {
             out->scatters = sheen_diffuse_point(&s, &bsdf, wo, &out->point);
             return;

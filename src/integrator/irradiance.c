@@ -89,7 +89,7 @@ static bool gathers_see_light(const SheenScene *scene)
     bool lamps = false, delta = false;
     for (uint32_t i = 0; i < scene->n_shapes; ++i) {
         lamps = lamps || scene->shapes[i].light != SHEEN_NONE;
-        delta = delta || sheen_bsdf_is_delta(&(Bsdf){.material = &scene->materials[scene->shapes[i].material]});
+        delta = delta || sheen_material_may_be_delta(scene, scene->shapes[i].material);
     }
     return lamps && delta;
 }

@@ -27,6 +27,7 @@ typedef struct Path {
     bool competes;          // false for camera rays and after delta lobes: no light sample could have found it
     float pdf;              // 1/sr
     Vec3 p, n;              // the vertex it left, and the normal there on its side
+    bool both_sides;        // lights on the other side were asked as well
     uint32_t light_samples; // that were taken there
     PathRadiance sum;
 } Path;
@@ -37,7 +38,8 @@ typedef struct Vertex {
     Bsdf bsdf;
     Frame frame; // about the shading normal
     Vec3 wo, wo_l;
-    Vec3 side; // geometric normal on the side of wo
+    Vec3 side;       // geometric normal on the side of wo
+    bool both_sides; // light from the other side is scattered too
 } Vertex;
 
 static void draw_from(Path *path, uint32_t dim)
@@ -60,11 +62,30 @@ static void add_light(Path *path, uint32_t scatterings, Rgb radiance)
     *sum = rgb_add(*sum, rgb_mul(path->throughput, radiance));
 }
 
+// Chooses a light for a light sample. Where light from both sides is scattered, a coin decides on the side first.
+// @return the probability, of the light by either way
+static float choose_light(const SheenLights *lights, Vec3 p, Vec3 n, bool both_sides, float *u, uint32_t *light)
+{
+    if (!both_sides) return sheen_lights_choose(lights, p, n, u, light);
+    bool other = *u >= 0.5f;
+    *u = other ? 2.0f * *u - 1.0f : 2.0f * *u;
+    float chosen = sheen_lights_choose(lights, p, other ? v3_neg(n) : n, u, light);
+    if (!(chosen > 0.0f)) return 0.0f;
+    return 0.5f * (chosen + sheen_lights_choose_probability(lights, p, other ? n : v3_neg(n), *light));
+}
+
+static float light_probability(const Path *path, uint32_t light)
+{
+    const SheenLights *lights = path->work->lights;
+    float p = sheen_lights_choose_probability(lights, path->p, path->n, light);
+    if (!path->both_sides) return p;
+    return 0.5f * (p + sheen_lights_choose_probability(lights, path->p, v3_neg(path->n), light));
+}
+
 // Weight of light that the path's ray found: `light` its index, pdf_light the density of light samples there.
 static float weight_of_found(const Path *path, uint32_t light, float pdf_light)
 {
-    float choice = sheen_lights_choose_probability(path->work->lights, path->p, path->n, light);
-    return power_heuristic(path->pdf, (float)path->light_samples * choice * pdf_light);
+    return power_heuristic(path->pdf, (float)path->light_samples * light_probability(path, light) * pdf_light);
 }
 
 static void add_environment(Path *path)
@@ -100,6 +121,7 @@ static bool make_vertex(const Path *path, const SurfacePoint *s, Vertex *v)
     if (!(cos_g * v->wo_l.z > 0.0f)) return false;
     v->side = cos_g > 0.0f ? s->ng : v3_neg(s->ng);
     v->bsdf = sheen_bsdf_at(path->work->scene, s);
+    v->both_sides = sheen_bsdf_transmits(&v->bsdf);
     return true;
 }
 
@@ -108,7 +130,7 @@ static Rgb light_sample(const Path *path, const Vertex *v, uint32_t n_samples, f
 {
     const SheenWork *work = path->work;
     uint32_t light;
-    float choice = sheen_lights_choose(work->lights, v->s.p, v->side, &u_choice, &light);
+    float choice = choose_light(work->lights, v->s.p, v->side, v->both_sides, &u_choice, &light);
     LightSample ls;
     if (!(choice > 0.0f) || !sheen_light_sample(work->lights, light, v->s.p, u, &ls)) return rgb_gray(0.0f);
     Vec3 wi_l = frame_to_local(&v->frame, ls.wi);
@@ -163,6 +185,7 @@ static bool scatter(Path *path, const Vertex *v)
     path->pdf = bs.pdf;
     path->p = v->s.p;
     path->n = v->side;
+    path->both_sides = v->both_sides;
     ++path->vertices;
     return true;
 }

@@ -93,7 +93,7 @@ static bool split(const SheenWork *work, const EyeRay *r, const SurfacePoint *s,
     if (r->depth >= SHEEN_SPECULAR_MAX) return true;
     Frame frame = frame_from_normal(s->ns);
     Vec3 wo_l = frame_to_local(&frame, v3_neg(r->ray.d));
-    BsdfSample lobes[2];
+    BsdfSample lobes[SHEEN_BSDF_MAX_DELTA];
     int n;
     if (r->depth < SPLIT_DEPTH) {
         n = sheen_bsdf_delta_lobes(bsdf, wo_l, lobes);
@@ -168,6 +168,7 @@ static bool arrive(const SheenWork *work, const SheenEye *eye, EyeRay *r, const 
         if (!sheen_lambertian_point(lambertian, &s, wo, &p.point)) return true;
     } else {
         Bsdf bsdf = sheen_bsdf_at(work->scene, &s);
+        sheen_bsdf_simplify(&bsdf);
         if (sheen_bsdf_is_delta(&bsdf)) return split(work, r, &s, &bsdf, next, v);
         if (!sheen_diffuse_point(&s, &bsdf, wo, &p.point)) return true;
     }

@@ -164,16 +164,13 @@ static Rgb clamped(Mitsuba *m, const SheenXml *at, Rgb c)
     return r;
 }
 
-SheenTexture sheen_mi_texture(Mitsuba *m, const SheenXml *e, const char *name, Rgb otherwise)
+SheenTexture sheen_mi_texture_of(Mitsuba *m, SheenXml *value, Rgb otherwise)
 {
-    SheenXml *c = sheen_mi_child(e, name);
-    SheenXml *value = c ? sheen_mi_resolve(m, c) : NULL;
-    if (!value) return sheen_texture_constant(otherwise);
     value->used = true;
     if (strcmp(value->tag, "texture") != 0)
         return sheen_texture_constant(clamped(m, value, sheen_mi_color_of(m, value, MITSUBA_REFLECTANCE)));
     if (value->busy) {
-        sheen_mi_fail(m, SHEEN_ERR_PARSE, c, "the texture refers to itself");
+        sheen_mi_fail(m, SHEEN_ERR_PARSE, value, "the texture refers to itself");
         return sheen_texture_constant(otherwise);
     }
     value->busy = true;
@@ -181,4 +178,11 @@ SheenTexture sheen_mi_texture(Mitsuba *m, const SheenXml *e, const char *name, R
     value->busy = false;
     if (t.kind != SHEEN_TEXTURE_BITMAP) t.value = clamped(m, value, t.value), t.value2 = clamped(m, value, t.value2);
     return t;
+}
+
+SheenTexture sheen_mi_texture(Mitsuba *m, const SheenXml *e, const char *name, Rgb otherwise)
+{
+    SheenXml *c = sheen_mi_child(e, name);
+    SheenXml *value = c ? sheen_mi_resolve(m, c) : NULL;
+    return value ? sheen_mi_texture_of(m, value, otherwise) : sheen_texture_constant(otherwise);
 }

@@ -3,88 +3,315 @@
 
 #include "material/bsdf_ops.h"
 
-static const BsdfOps *const ops_of_kind[] = {
-    [SHEEN_MATERIAL_DIFFUSE] = &sheen_bsdf_diffuse,
-    [SHEEN_MATERIAL_CONDUCTOR] = &sheen_bsdf_conductor,
-    [SHEEN_MATERIAL_DIELECTRIC] = &sheen_bsdf_dielectric,
-    [SHEEN_MATERIAL_THIN_DIELECTRIC] = &sheen_bsdf_thin_dielectric,
-};
-
-static const BsdfOps *ops(const Bsdf *bsdf)
+static bool counts(const BsdfLobe *lobe, unsigned classes)
 {
-    return ops_of_kind[bsdf->material->kind];
+    return (lobe->ops->class & classes) != 0;
 }
 
-// Reflectances outside [0, 1] would make energy out of nothing; the comparisons send NaN to 0.
-static float unit_or_zero(float x)
+unsigned sheen_bsdf_classes(const Bsdf *bsdf)
 {
-    return x > 0.0f ? minf(x, 1.0f) : 0.0f;
-}
-
-static Rgb reflectance_at(const SheenTexture *t, Vec2 uv)
-{
-    Rgb c = sheen_texture_eval(t, uv);
-    return rgb(unit_or_zero(c.r), unit_or_zero(c.g), unit_or_zero(c.b));
-}
-
-Bsdf sheen_bsdf_at(const SheenScene *scene, const SurfacePoint *s)
-{
-    const SheenMaterial *m = &scene->materials[scene->shapes[s->shape].material];
-    Bsdf b = {.material = m};
-    switch (m->kind) {
-    case SHEEN_MATERIAL_DIFFUSE:
-        b.reflectance = reflectance_at(&m->reflectance, s->uv);
-        break;
-    case SHEEN_MATERIAL_DIELECTRIC:
-    case SHEEN_MATERIAL_THIN_DIELECTRIC:
-        b.specular_transmittance = reflectance_at(&m->specular_transmittance, s->uv);
-        b.specular_reflectance = reflectance_at(&m->specular_reflectance, s->uv);
-        break;
-    case SHEEN_MATERIAL_CONDUCTOR:
-        b.specular_reflectance = reflectance_at(&m->specular_reflectance, s->uv);
-        break;
-    }
-    return b;
+    unsigned classes = 0;
+    for (uint32_t i = 0; i < bsdf->n_lobes; ++i) classes |= bsdf->lobes[i].ops->class;
+    return classes;
 }
 
 bool sheen_bsdf_is_delta(const Bsdf *bsdf)
 {
-    return ops(bsdf)->lobes != NULL;
+    return sheen_bsdf_classes(bsdf) == SHEEN_BSDF_DELTA;
 }
 
-Rgb sheen_bsdf_eval(const Bsdf *bsdf, Vec3 wo_l, Vec3 wi_l)
+bool sheen_bsdf_transmits(const Bsdf *bsdf)
 {
-    const BsdfOps *o = ops(bsdf);
-    return o->eval ? o->eval(bsdf, wo_l, wi_l) : rgb_gray(0.0f);
+    for (uint32_t i = 0; i < bsdf->n_lobes; ++i) {
+        const BsdfLobe *lobe = &bsdf->lobes[i];
+        bool opaque = lobe->ops == &sheen_lobe_principled_specular && lobe->principled.spec_trans == 0.0f;
+        if (lobe->ops->transmits && !opaque) return true;
+    }
+    return false;
 }
 
-float sheen_bsdf_pdf(const Bsdf *bsdf, Vec3 wo_l, Vec3 wi_l)
+// ---- one lobe, from outside its wrappers ------------------------------------------------------------------------
+
+static Rgb eval_lobe(const Bsdf *bsdf, const BsdfLobe *lobe, Vec3 wo, Vec3 wi)
 {
-    const BsdfOps *o = ops(bsdf);
-    return o->pdf ? o->pdf(bsdf, wo_l, wi_l) : 0.0f;
+    BsdfWay way;
+    Rgb factor;
+    float density;
+    if (!sheen_bsdf_way(bsdf, lobe, wo, &way) || !sheen_bsdf_way_in(&way, &wi, &factor, &density))
+        return rgb_gray(0.0f);
+    Rgb f = rgb_scale(lobe->ops->eval(lobe, bsdf_way_wo(&way), wi), lobe->weight);
+    return way.n == 0 ? f : rgb_scale(rgb_mul(f, factor), density);
 }
 
-bool sheen_bsdf_sample(const Bsdf *bsdf, Vec3 wo_l, float lobe, Vec2 u, BsdfSample *out)
+static float pdf_lobe(const Bsdf *bsdf, const BsdfLobe *lobe, Vec3 wo, Vec3 wi)
 {
-    const BsdfOps *o = ops(bsdf);
-    if (!o->lobes) return o->sample(bsdf, wo_l, lobe, u, out);
-    BsdfSample lobes[2];
-    int n = o->lobes(bsdf, wo_l, lobes);
-    if (n == 0) return false;
-    *out = lobes[n == 2 && lobe >= lobes[0].pdf ? 1 : 0];
-    out->weight = rgb_scale(out->weight, 1.0f / out->pdf);
+    BsdfWay way;
+    Rgb factor;
+    float density;
+    if (!sheen_bsdf_way(bsdf, lobe, wo, &way) || !sheen_bsdf_way_in(&way, &wi, &factor, &density)) return 0.0f;
+    return lobe->ops->pdf(lobe, bsdf_way_wo(&way), wi) * density;
+}
+
+// The weight is that of the lobe alone, its share included.
+static bool sample_lobe(const Bsdf *bsdf, const BsdfLobe *lobe, Vec3 wo, float choice, Vec2 u, BsdfSample *out)
+{
+    BsdfWay way;
+    *out = (BsdfSample){.pdf = 0.0f};
+    if (!sheen_bsdf_way(bsdf, lobe, wo, &way)) return false;
+    if (lobe->ops->lobes) {
+        BsdfSample deltas[2];
+        int n = lobe->ops->lobes(lobe, bsdf_way_wo(&way), deltas);
+        if (n == 0) return false;
+        *out = deltas[n == 2 && choice >= deltas[0].pdf ? 1 : 0];
+        out->weight = rgb_scale(out->weight, 1.0f / out->pdf);
+    } else if (!lobe->ops->sample(lobe, bsdf_way_wo(&way), choice, u, out)) {
+        return false;
+    }
+    if (!sheen_bsdf_way_out(&way, out)) return false;
+    out->weight = rgb_scale(out->weight, lobe->weight);
+    out->transmit = out->wi_l.z * wo.z < 0.0f;
     return true;
 }
 
-int sheen_bsdf_delta_lobes(const Bsdf *bsdf, Vec3 wo_l, BsdfSample out[2])
+static float importance_of(const Bsdf *bsdf, const BsdfLobe *lobe, Vec3 wo)
 {
-    const BsdfOps *o = ops(bsdf);
-    int n = o->lobes ? o->lobes(bsdf, wo_l, out) : 0;
-    for (int i = 0; i < n; ++i) out[i].pdf = 1.0f;
+    BsdfWay way;
+    if (!sheen_bsdf_way(bsdf, lobe, wo, &way)) return 0.0f;
+    float x = lobe->weight * rgb_max(way.factor) * lobe->ops->importance(lobe, bsdf_way_wo(&way));
+    return x > 0.0f && isfinite(x) ? x : 0.0f;
+}
+
+// ---- the choice among lobes -------------------------------------------------------------------------------------
+
+// Probabilities of the lobes of some classes.
+typedef struct Shares {
+    float p[SHEEN_BSDF_MAX_LOBES];
+    uint32_t n_counting, only; // lobes with a share, and the last of them
+} Shares;
+
+static void share_out(const Bsdf *bsdf, unsigned classes, Vec3 wo, Shares *s)
+{
+    float sum = 0.0f;
+    s->n_counting = s->only = 0;
+    for (uint32_t i = 0; i < bsdf->n_lobes; ++i) {
+        s->p[i] = counts(&bsdf->lobes[i], classes) ? importance_of(bsdf, &bsdf->lobes[i], wo) : 0.0f;
+        if (!(s->p[i] > 0.0f)) continue;
+        sum += s->p[i];
+        s->only = i;
+        ++s->n_counting;
+    }
+    if (s->n_counting == 1) s->p[s->only] = 1.0f; // without rounding
+    for (uint32_t i = 0; s->n_counting > 1 && i < bsdf->n_lobes; ++i) s->p[i] /= sum;
+}
+
+// The last lobe with a share takes what rounding leaves over. *u becomes a number for use within the lobe.
+static uint32_t choose(const Shares *s, uint32_t n, float *u)
+{
+    if (s->n_counting == 1) return s->only;
+    float before = 0.0f;
+    uint32_t i = 0;
+    for (; i < n; ++i) {
+        if (i == s->only || *u < before + s->p[i]) break;
+        before += s->p[i];
+    }
+    *u = clampf((*u - before) / s->p[i], 0.0f, 0x1.fffffep-1f);
+    return i;
+}
+
+// ---- the whole --------------------------------------------------------------------------------------------------
+
+Rgb sheen_bsdf_eval_of(const Bsdf *bsdf, unsigned classes, Vec3 wo_l, Vec3 wi_l)
+{
+    Rgb sum = rgb_gray(0.0f);
+    for (uint32_t i = 0; i < bsdf->n_lobes; ++i) {
+        const BsdfLobe *lobe = &bsdf->lobes[i];
+        if (lobe->ops->eval && counts(lobe, classes)) sum = rgb_add(sum, eval_lobe(bsdf, lobe, wo_l, wi_l));
+    }
+    return sum;
+}
+
+static float pdf_of_shares(const Bsdf *bsdf, const Shares *s, Vec3 wo, Vec3 wi)
+{
+    float sum = 0.0f;
+    for (uint32_t i = 0; i < bsdf->n_lobes; ++i) {
+        const BsdfLobe *lobe = &bsdf->lobes[i];
+        if (lobe->ops->pdf && s->p[i] > 0.0f) sum += s->p[i] * pdf_lobe(bsdf, lobe, wo, wi);
+    }
+    return sum;
+}
+
+float sheen_bsdf_pdf_of(const Bsdf *bsdf, unsigned classes, Vec3 wo_l, Vec3 wi_l)
+{
+    Shares s;
+    share_out(bsdf, classes, wo_l, &s);
+    return pdf_of_shares(bsdf, &s, wo_l, wi_l);
+}
+
+bool sheen_bsdf_sample_of(const Bsdf *bsdf, unsigned classes, Vec3 wo_l, float lobe, Vec2 u, BsdfSample *out)
+{
+    Shares s;
+    share_out(bsdf, classes, wo_l, &s);
+    if (s.n_counting == 0) return false;
+    uint32_t i = choose(&s, bsdf->n_lobes, &lobe);
+    if (!sample_lobe(bsdf, &bsdf->lobes[i], wo_l, lobe, u, out)) return false;
+    if (s.n_counting == 1) return true;
+    if (out->delta) {
+        out->weight = rgb_scale(out->weight, 1.0f / s.p[i]);
+        out->pdf *= s.p[i];
+        return true;
+    }
+    // Other lobes could have drawn the direction too: all of them count, with the density of all.
+    out->pdf = pdf_of_shares(bsdf, &s, wo_l, out->wi_l);
+    if (!(out->pdf > 0.0f)) return false;
+    out->weight = rgb_scale(sheen_bsdf_eval_of(bsdf, classes, wo_l, out->wi_l), 1.0f / out->pdf);
+    return true;
+}
+
+// Adds a delta lobe, or its weight to one of the same direction.
+static int add_delta(const BsdfSample *d, int n, BsdfSample out[])
+{
+    for (int i = 0; i < n; ++i)
+        if (v3_dot(d->wi_l, out[i].wi_l) > 1.0f - 1e-6f) {
+            out[i].weight = rgb_add(out[i].weight, d->weight);
+            return n;
+        }
+    out[n] = *d;
+    out[n].pdf = 1.0f;
+    return n + 1;
+}
+
+int sheen_bsdf_delta_lobes(const Bsdf *bsdf, Vec3 wo_l, BsdfSample out[SHEEN_BSDF_MAX_DELTA])
+{
+    int n = 0;
+    for (uint32_t i = 0; i < bsdf->n_lobes; ++i) {
+        const BsdfLobe *lobe = &bsdf->lobes[i];
+        BsdfWay way;
+        BsdfSample deltas[2];
+        if (!lobe->ops->lobes || !sheen_bsdf_way(bsdf, lobe, wo_l, &way)) continue;
+        int n_deltas = lobe->ops->lobes(lobe, bsdf_way_wo(&way), deltas);
+        for (int k = 0; k < n_deltas; ++k) {
+            if (!sheen_bsdf_way_out(&way, &deltas[k])) continue;
+            deltas[k].weight = rgb_scale(deltas[k].weight, lobe->weight);
+            deltas[k].transmit = deltas[k].wi_l.z * wo_l.z < 0.0f;
+            n = add_delta(&deltas[k], n, out);
+        }
+    }
     return n;
+}
+
+// ---- albedos ----------------------------------------------------------------------------------------------------
+
+enum { ALBEDO_SIDE = 8 };
+
+// The i-th of a fixed set of samples: stratified places, choices spread over them.
+static void albedo_numbers(int i, float *choice, Vec2 *u)
+{
+    int x = i / ALBEDO_SIDE, y = i % ALBEDO_SIDE;
+    *u = v2(((float)x + 0.5f) / ALBEDO_SIDE, ((float)y + 0.5f) / ALBEDO_SIDE);
+    *choice = ((float)((3 * x + 5 * y) % ALBEDO_SIDE) + 0.5f) / ALBEDO_SIDE;
+}
+
+static Rgb at_most_one(Rgb c)
+{
+    return rgb(clampf(c.r, 0.0f, 1.0f), clampf(c.g, 0.0f, 1.0f), clampf(c.b, 0.0f, 1.0f));
+}
+
+Rgb sheen_bsdf_albedo_by_samples(const BsdfLobe *b, Vec3 wo, float ior)
+{
+    const int n = ALBEDO_SIDE * ALBEDO_SIDE;
+    Rgb sum = rgb_gray(0.0f);
+    for (int i = 0; i < n; ++i) {
+        float choice;
+        Vec2 u;
+        BsdfSample s = {.pdf = 0.0f};
+        albedo_numbers(i, &choice, &u);
+        if (!b->ops->sample(b, wo, choice, u, &s)) continue;
+        float spread = s.wi_l.z * wo.z < 0.0f ? sqrf(wo.z > 0.0f ? ior : 1.0f / ior) : 1.0f;
+        sum = rgb_mad(sum, spread / (float)n, s.weight);
+    }
+    return at_most_one(sum);
+}
+
+static bool is_coated(const BsdfWay *way)
+{
+    for (int i = 0; i < way->n; ++i)
+        if (way->wraps[i]->kind == SHEEN_WRAP_COAT) return true;
+    return false;
+}
+
+static Rgb albedo_of(const Bsdf *bsdf, const BsdfLobe *lobe, Vec3 wo)
+{
+    BsdfWay way;
+    if (!sheen_bsdf_way(bsdf, lobe, wo, &way)) return rgb_gray(0.0f);
+    if (!is_coated(&way)) return rgb_scale(lobe->ops->albedo(lobe, bsdf_way_wo(&way)), lobe->weight);
+    const int n = ALBEDO_SIDE * ALBEDO_SIDE;
+    Rgb sum = rgb_gray(0.0f);
+    for (int i = 0; i < n; ++i) {
+        float choice;
+        Vec2 u;
+        BsdfSample s;
+        albedo_numbers(i, &choice, &u);
+        if (sample_lobe(bsdf, lobe, wo, choice, u, &s)) sum = rgb_mad(sum, 1.0f / (float)n, s.weight);
+    }
+    return sum;
 }
 
 Rgb sheen_bsdf_albedo(const Bsdf *bsdf, Vec3 wo_l)
 {
-    return ops(bsdf)->albedo(bsdf, wo_l);
+    Rgb sum = rgb_gray(0.0f);
+    for (uint32_t i = 0; i < bsdf->n_lobes; ++i) sum = rgb_add(sum, albedo_of(bsdf, &bsdf->lobes[i], wo_l));
+    return at_most_one(sum);
+}
+
+// ---- for caches -------------------------------------------------------------------------------------------------
+
+// The z axis inside all wrappers, as it is outside, on the side of wo.
+static Vec3 normal_of(const Bsdf *bsdf, const BsdfLobe *lobe, Vec3 wo)
+{
+    Vec3 n = v3(0.0f, 0.0f, 1.0f);
+    bool flip = false;
+    for (uint32_t i = lobe->wrap; i != 0; i = bsdf->wraps[i - 1].outer) {
+        const BsdfWrap *wrap = &bsdf->wraps[i - 1];
+        if (wrap->kind == SHEEN_WRAP_FRAME) n = frame_to_world(&wrap->frame, n);
+        // A flip outside a frame mirrors what the frame holds.
+        flip = wrap->kind == SHEEN_WRAP_BACK || (wrap->kind == SHEEN_WRAP_TWO_SIDED && wo.z < 0.0f);
+        if (flip) n.z = -n.z;
+    }
+    return n.z * wo.z < 0.0f ? v3_neg(n) : n;
+}
+
+Rgb sheen_bsdf_diffuse(const Bsdf *bsdf, Vec3 wo_l, Vec3 *n_l)
+{
+    Rgb sum = rgb_gray(0.0f);
+    float heaviest = 0.0f;
+    if (n_l) *n_l = v3(0.0f, 0.0f, wo_l.z < 0.0f ? -1.0f : 1.0f);
+    for (uint32_t i = 0; i < bsdf->n_lobes; ++i) {
+        const BsdfLobe *lobe = &bsdf->lobes[i];
+        if (lobe->ops->class != SHEEN_BSDF_DIFFUSE) continue;
+        Rgb albedo = albedo_of(bsdf, lobe, wo_l);
+        sum = rgb_add(sum, albedo);
+        if (n_l && rgb_max(albedo) > heaviest) {
+            heaviest = rgb_max(albedo);
+            *n_l = normal_of(bsdf, lobe, wo_l);
+        }
+    }
+    return at_most_one(sum);
+}
+
+float sheen_bsdf_roughness(const Bsdf *bsdf)
+{
+    float least = 1.0f;
+    for (uint32_t i = 0; i < bsdf->n_lobes; ++i) {
+        const BsdfLobe *lobe = &bsdf->lobes[i];
+        if (lobe->ops->class == SHEEN_BSDF_GLOSSY)
+            least = minf(least, sqrtf(lobe->microfacet.alpha_u * lobe->microfacet.alpha_v));
+    }
+    return least;
+}
+
+void sheen_bsdf_roughen(Bsdf *bsdf, float least_alpha)
+{
+    least_alpha = clampf(least_alpha, SHEEN_ALPHA_MIN, 1.0f);
+    for (uint32_t i = 0; i < bsdf->n_lobes; ++i)
+        if (bsdf->lobes[i].ops->roughen) bsdf->lobes[i].ops->roughen(&bsdf->lobes[i], least_alpha);
 }

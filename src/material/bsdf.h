@@ -1,23 +1,71 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a surface does with light. Directions are local (z along the shading normal) and point away from the surface.
+// What a surface does with light. Directions are local, in frame_from_normal(s->ns) of the surface point (z along the
+// shading normal), and point away from the surface.
+//
+// A material becomes a list of lobes: elementary BSDFs, each with a share of the whole, each of one class. Wrappers
+// stand between the surface and a lobe: another frame (bump and normal maps, anisotropy), the mirrored back side, a
+// coating. See docs/materials.md.
 #ifndef SHEEN_MATERIAL_BSDF_H
 #define SHEEN_MATERIAL_BSDF_H
 
+#include "math/fresnel.h"
 #include "ray/surface.h"
 #include "scene/scene.h"
 
-/** A BSDF at a point: a material with its textures looked up. Small, passed by pointer, made in shading. */
+enum { SHEEN_BSDF_MAX_LOBES = SHEEN_MATERIAL_MAX_LOBES, SHEEN_BSDF_MAX_WRAPS = SHEEN_MATERIAL_MAX_WRAPS };
+/** A lobe is two delta lobes at most: a mirror and a refraction. */
+enum { SHEEN_BSDF_MAX_DELTA = 2 * SHEEN_BSDF_MAX_LOBES };
+
+/** Classes of lobes; may be combined. */
+typedef enum BsdfClass {
+    SHEEN_BSDF_DIFFUSE = 1, // nearly Lambertian reflection: what an irradiance is enough for
+    SHEEN_BSDF_GLOSSY = 2,  // every other smooth lobe, transmission included
+    SHEEN_BSDF_DELTA = 4,   // mirrors, refraction, straight passage
+    SHEEN_BSDF_SMOOTH = SHEEN_BSDF_DIFFUSE | SHEEN_BSDF_GLOSSY,
+    SHEEN_BSDF_ALL = SHEEN_BSDF_SMOOTH | SHEEN_BSDF_DELTA,
+} BsdfClass;
+
+/** An elementary BSDF with its textures looked up. Its fields are for src/material. */
+typedef struct BsdfLobe {
+    const struct BsdfOps *ops;
+    const SheenMaterial *material; // what it is a part of, for constants
+    float weight;                  // share of the whole, [0, 1]
+    uint32_t wrap;                 // the innermost wrapper around it, counted from 1; 0 for none
+    Rgb reflectance, transmittance;
+    Microfacet microfacet;
+    struct {
+        float roughness, metallic, spec_trans, spec_tint, sheen, sheen_tint, flatness, clearcoat, clearcoat_gloss;
+    } principled;
+} BsdfLobe;
+
+typedef enum BsdfWrapKind {
+    SHEEN_WRAP_TWO_SIDED, // seen from behind, the normal is turned round
+    SHEEN_WRAP_FRONT,     // black from behind
+    SHEEN_WRAP_BACK,      // black from the front, and turned round
+    SHEEN_WRAP_FRAME,     // another frame
+    SHEEN_WRAP_COAT,      // a refracting layer
+} BsdfWrapKind;
+
+/** What stands between the surface and lobes. Its fields are for src/material. */
+typedef struct BsdfWrap {
+    BsdfWrapKind kind;
+    uint32_t outer;                // the wrapper around this one, counted from 1; 0 for none
+    Frame frame;                   // in the frame outside
+    const SheenMaterial *material; // the coating
+    float alpha;                   // of the coating
+} BsdfWrap;
+
+/** A BSDF at a point, made in shading, passed by pointer. What is beyond the counts is not initialized. */
 typedef struct Bsdf {
-    const SheenMaterial *material;
-    Rgb reflectance;            // diffuse
-    Rgb specular_reflectance;   // specular kinds
-    Rgb specular_transmittance; // dielectrics
+    uint32_t n_lobes, n_wraps;
+    BsdfLobe lobes[SHEEN_BSDF_MAX_LOBES];
+    BsdfWrap wraps[SHEEN_BSDF_MAX_WRAPS];
 } Bsdf;
 
 /** One sampled direction. */
 typedef struct BsdfSample {
     Vec3 wi_l;     // unit
-    Rgb weight;    // f cos(theta_i) / pdf; for a delta lobe the lobe's factor over the probability of choosing it
+    Rgb weight;    // f |cos(theta_i)| / pdf; for a delta lobe the lobe's factor over the probability of choosing it
     float pdf;     // solid angle density, 1/sr; for a delta lobe the probability of choosing it
     bool delta;    // a mirror or refraction: eval and pdf do not see it
     bool transmit; // wi_l is on the other side than wo_l
@@ -26,35 +74,84 @@ typedef struct BsdfSample {
 /** Looks the textures up at a surface point. */
 Bsdf sheen_bsdf_at(const SheenScene *scene, const SurfacePoint *s);
 
+// ---- the whole --------------------------------------------------------------------------------------------------
+
+/** @return the classes of its lobes. */
+unsigned sheen_bsdf_classes(const Bsdf *bsdf);
+
 /** @return true when the BSDF has only delta lobes: it is followed, not lit. */
 bool sheen_bsdf_is_delta(const Bsdf *bsdf);
 
-/** @return f(wo, wi) |cos(theta_i)|, 1/sr; zero for delta lobes. A one-sided diffuse surface is black from behind. */
-Rgb sheen_bsdf_eval(const Bsdf *bsdf, Vec3 wo_l, Vec3 wi_l);
-
-/** @return the density, 1/sr, with which sheen_bsdf_sample draws wi_l; zero for delta lobes. */
-float sheen_bsdf_pdf(const Bsdf *bsdf, Vec3 wo_l, Vec3 wi_l);
-
-/** @return false when the light is absorbed. `lobe` chooses among lobes, u places the direction; all in [0, 1). */
-bool sheen_bsdf_sample(const Bsdf *bsdf, Vec3 wo_l, float lobe, Vec2 u, BsdfSample *out);
+/** @return true when a smooth lobe sends light to the other side: then lights on both sides matter. */
+bool sheen_bsdf_transmits(const Bsdf *bsdf);
 
 /**
- * The delta lobes, all of them, for a deterministic split: at most 2, each with pdf 1 and its factor as weight.
+ * @param classes  which lobes count; SHEEN_BSDF_ALL for the whole
+ * @return f(wo, wi) |cos(theta_i)|, 1/sr; zero for delta lobes. A one-sided surface is black from behind.
+ */
+Rgb sheen_bsdf_eval_of(const Bsdf *bsdf, unsigned classes, Vec3 wo_l, Vec3 wi_l);
+static inline Rgb sheen_bsdf_eval(const Bsdf *bsdf, Vec3 wo_l, Vec3 wi_l)
+{
+    return sheen_bsdf_eval_of(bsdf, SHEEN_BSDF_ALL, wo_l, wi_l);
+}
+
+/** @return the density, 1/sr, with which sheen_bsdf_sample_of draws wi_l; zero for delta lobes. */
+float sheen_bsdf_pdf_of(const Bsdf *bsdf, unsigned classes, Vec3 wo_l, Vec3 wi_l);
+static inline float sheen_bsdf_pdf(const Bsdf *bsdf, Vec3 wo_l, Vec3 wi_l)
+{
+    return sheen_bsdf_pdf_of(bsdf, SHEEN_BSDF_ALL, wo_l, wi_l);
+}
+
+/** @return false when the light is absorbed. `lobe` chooses among lobes, u places the direction; all in [0, 1). */
+bool sheen_bsdf_sample_of(const Bsdf *bsdf, unsigned classes, Vec3 wo_l, float lobe, Vec2 u, BsdfSample *out);
+static inline bool sheen_bsdf_sample(const Bsdf *bsdf, Vec3 wo_l, float lobe, Vec2 u, BsdfSample *out)
+{
+    return sheen_bsdf_sample_of(bsdf, SHEEN_BSDF_ALL, wo_l, lobe, u, out);
+}
+
+/**
+ * The delta lobes, all of them, for a deterministic split, each with pdf 1 and its factor as weight. Those in the same
+ * direction are one.
  * @return their number; 0 for a BSDF without delta lobes or when all is absorbed
  */
-int sheen_bsdf_delta_lobes(const Bsdf *bsdf, Vec3 wo_l, BsdfSample out[2]);
+int sheen_bsdf_delta_lobes(const Bsdf *bsdf, Vec3 wo_l, BsdfSample out[SHEEN_BSDF_MAX_DELTA]);
 
 /**
  * @return the share of the energy that wo's direction scatters into all others, transmission included, each channel in
- *         [0, 1]; without the factor 1/eta^2 that refraction puts on radiance
+ *         [0, 1]; without the factor 1/eta^2 that refraction puts on radiance. Closed forms where there are, else a
+ *         fixed quadrature, good to about 1 %: for layers and choices, not for light.
  */
 Rgb sheen_bsdf_albedo(const Bsdf *bsdf, Vec3 wo_l);
 
-/** Reflectance of a smooth dielectric. eta: interior over exterior; cos_i > 0 from outside, < 0 from inside.
- *  *cos_t: cosine of the refracted direction on the other side, sign opposite to cos_i; 0 at total reflection. */
-float sheen_fresnel_dielectric(float cos_i, float eta, float *cos_t);
+// ---- for caches -------------------------------------------------------------------------------------------------
 
-/** Reflectance of a smooth conductor of relative index eta + i k, for cos_i in [0, 1], one channel. */
-float sheen_fresnel_conductor(float cos_i, float eta, float k);
+/**
+ * The diffuse lobes as one Lambertian surface: their radiance toward wo is the result times irradiance / pi. Exact for
+ * Lambert's lobe. The base of a plastic and the diffuse lobe of `principled` depend on wi as well: the result is their
+ * directional albedo for wo, exact under light that is alike from everywhere.
+ * @param n_l  gets the unit normal about which the irradiance is meant, on the side of wo: z or -z unless a map
+ * perturbs it (that of the heaviest diffuse lobe); NULL when not wanted
+ * @return zero where there is no diffuse lobe, or wo is behind it
+ */
+Rgb sheen_bsdf_diffuse(const Bsdf *bsdf, Vec3 wo_l, Vec3 *n_l);
+
+/** @return the least roughness alpha of the glossy lobes (of their two axes the mean); 1 without any. */
+float sheen_bsdf_roughness(const Bsdf *bsdf);
+
+/**
+ * Makes glossy and mirroring lobes rougher than they are: of at least `least_alpha`, (0, 1]. Smooth metals, dielectrics
+ * and coats turn into rough ones; thin panes and straight passage, which focus nothing, stay. For rays that gather
+ * light and would find caustics as noise: the energy moves, hardly changes.
+ */
+void sheen_bsdf_roughen(Bsdf *bsdf, float least_alpha);
+
+/**
+ * Replaces the BSDF by the simplest relative of its heaviest part: a Lambertian surface, a mirror, glass, or passage.
+ * For integrators that know diffuse surfaces and delta lobes only.
+ */
+void sheen_bsdf_simplify(Bsdf *bsdf);
+
+/** @return whether sheen_bsdf_simplify may leave a delta lobe of this material, somewhere. */
+bool sheen_material_may_be_delta(const SheenScene *scene, uint32_t material);
 
 #endif

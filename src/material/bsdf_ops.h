@@ -1,25 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each kind of BSDF implements; bsdf.c chooses by the material's kind. Included by src/material only.
+// What each kind of lobe implements; bsdf.c adds them up. Included by src/material only.
 #ifndef SHEEN_MATERIAL_BSDF_OPS_H
 #define SHEEN_MATERIAL_BSDF_OPS_H
 
 #include "material/bsdf.h"
 
 /**
- * One kind of BSDF: the functions of bsdf.h. A smooth kind has eval, pdf and sample and no lobes; a kind of delta lobes
- * only has lobes and none of the three. All have an albedo.
+ * One kind of lobe. Directions are in the lobe's frame, inside all wrappers, and the lobe's weight is not in it.
+ * A smooth kind has eval, pdf and sample; a delta kind has lobes. All have an albedo and an importance.
  */
 typedef struct BsdfOps {
-    Rgb (*eval)(const Bsdf *bsdf, Vec3 wo_l, Vec3 wi_l);
-    float (*pdf)(const Bsdf *bsdf, Vec3 wo_l, Vec3 wi_l);
-    bool (*sample)(const Bsdf *bsdf, Vec3 wo_l, float lobe, Vec2 u, BsdfSample *out);
+    BsdfClass class;
+    bool transmits; // a smooth kind that reaches the other side
+    Rgb (*eval)(const BsdfLobe *b, Vec3 wo, Vec3 wi);
+    float (*pdf)(const BsdfLobe *b, Vec3 wo, Vec3 wi);
+    /** wi_l, weight and pdf of *out are set; the rest is zero before. @return false when nothing is scattered */
+    bool (*sample)(const BsdfLobe *b, Vec3 wo, float choice, Vec2 u, BsdfSample *out);
     /** As sheen_bsdf_delta_lobes, but each pdf is the probability with which sampling chooses the lobe; their sum is 1.
      */
-    int (*lobes)(const Bsdf *bsdf, Vec3 wo_l, BsdfSample out[2]);
-    Rgb (*albedo)(const Bsdf *bsdf, Vec3 wo_l);
+    int (*lobes)(const BsdfLobe *b, Vec3 wo, BsdfSample out[2]);
+    Rgb (*albedo)(const BsdfLobe *b, Vec3 wo);
+    /** A cheap guess of the albedo's largest channel, by which sampling chooses lobes; positive where the albedo is. */
+    float (*importance)(const BsdfLobe *b, Vec3 wo);
+    /** See sheen_bsdf_roughen; NULL where there is nothing to do. */
+    void (*roughen)(BsdfLobe *b, float least_alpha);
 } BsdfOps;
 
-extern const BsdfOps sheen_bsdf_diffuse, sheen_bsdf_conductor, sheen_bsdf_dielectric, sheen_bsdf_thin_dielectric;
+extern const BsdfOps sheen_lobe_lambert, sheen_lobe_coated_lambert, sheen_lobe_diffuse_transmit; // diffuse surfaces
+extern const BsdfOps sheen_lobe_conductor, sheen_lobe_dielectric, sheen_lobe_thin_dielectric,
+    sheen_lobe_coat;                                                                                 // delta lobes
+extern const BsdfOps sheen_lobe_rough_conductor, sheen_lobe_rough_dielectric, sheen_lobe_rough_coat; // microfacets
+extern const BsdfOps sheen_lobe_phong, sheen_lobe_ward;                                              // empirical
+extern const BsdfOps sheen_lobe_principled_diffuse, sheen_lobe_principled_specular, sheen_lobe_principled_clearcoat;
 
 /** A delta lobe with its factor; pdf is set by the kind. */
 static inline BsdfSample bsdf_delta(Vec3 wi_l, Rgb weight, float pdf, bool transmit)
@@ -48,5 +60,50 @@ static inline int bsdf_interface_lobes(Vec3 wo_l, Vec3 wt_l, Rgb reflected, Rgb 
     if (t > 0.0f) out[n++] = bsdf_delta(wt_l, rgb_scale(transmitted, scale), t / sum, true);
     return n;
 }
+
+/** Cosine-weighted sampling on the side of +z, for lobes with an eval; weight from eval. */
+bool sheen_bsdf_sample_cosine(const BsdfLobe *b, Vec3 wo, Vec2 u, BsdfSample *out);
+static inline float bsdf_cosine_pdf(Vec3 wo, Vec3 wi)
+{
+    return wo.z > 0.0f && wi.z > 0.0f ? wi.z * SHEEN_INV_PI : 0.0f;
+}
+
+/** The albedo of a lobe by a fixed set of its own samples. @param ior  of light that goes through, else 1 */
+Rgb sheen_bsdf_albedo_by_samples(const BsdfLobe *b, Vec3 wo, float ior);
+
+/** The microfacet normal halfway between two directions on the same side, z > 0. */
+static inline Vec3 bsdf_half(Vec3 wo, Vec3 wi)
+{
+    Vec3 m = v3_normalize(v3_add(wo, wi));
+    return m.z < 0.0f ? v3_neg(m) : m;
+}
+
+// ---- wrappers (wrap.c) ------------------------------------------------------------------------------------------
+
+/** The way of wo from the surface through all wrappers to a lobe. */
+typedef struct BsdfWay {
+    const BsdfWrap *wraps[SHEEN_BSDF_MAX_WRAPS]; // from the outermost
+    Vec3 wo[SHEEN_BSDF_MAX_WRAPS + 1];           // outside wraps[i]; the last is inside all
+    Rgb factor;                                  // what the coatings leave of the light toward wo
+    int n;
+} BsdfWay;
+
+/** @return false when nothing of the lobe is seen from wo. */
+bool sheen_bsdf_way(const Bsdf *bsdf, const BsdfLobe *lobe, Vec3 wo, BsdfWay *way);
+static inline Vec3 bsdf_way_wo(const BsdfWay *way)
+{
+    return way->wo[way->n];
+}
+
+/**
+ * Takes wi from the surface to the lobe.
+ * @param factor   what the coatings leave of the light on both ways, beside `density`
+ * @param density  solid angle inside over that outside: densities and f |cos| are multiplied by it
+ * @return false when no light goes that way
+ */
+bool sheen_bsdf_way_in(const BsdfWay *way, Vec3 *wi, Rgb *factor, float *density);
+
+/** Takes a sample of the lobe to the surface: direction, weight and density. @return false when it does not get out */
+bool sheen_bsdf_way_out(const BsdfWay *way, BsdfSample *sample);
 
 #endif

@@ -2,22 +2,38 @@
 // A smooth interface of two transparent media: a mirror lobe and a refracted one.
 #include "material/bsdf_ops.h"
 
-static int dielectric_lobes(const Bsdf *bsdf, Vec3 wo_l, BsdfSample out[2])
+static int dielectric_lobes(const BsdfLobe *b, Vec3 wo, BsdfSample out[2])
 {
-    float cos_t, f = sheen_fresnel_dielectric(wo_l.z, bsdf->material->ior, &cos_t);
+    float ior = b->material->ior, cos_t, f = sheen_fresnel_dielectric(wo.z, ior, &cos_t);
     // Index on the side of wo over that beyond: tangents shrink by it, and radiance, which is bundled into less solid
     // angle by the denser medium, scales with its square on the way from wi to wo. Source: veach1997, sec. 5.2.
-    float ratio = wo_l.z > 0.0f ? 1.0f / bsdf->material->ior : bsdf->material->ior;
-    Vec3 wt = v3(-ratio * wo_l.x, -ratio * wo_l.y, cos_t);
-    return bsdf_interface_lobes(wo_l, wt, rgb_scale(bsdf->specular_reflectance, f),
-                                rgb_scale(bsdf->specular_transmittance, 1.0f - f), ratio * ratio, out);
+    float ratio = wo.z > 0.0f ? 1.0f / ior : ior;
+    Vec3 wt = v3(-ratio * wo.x, -ratio * wo.y, cos_t);
+    return bsdf_interface_lobes(wo, wt, rgb_scale(b->reflectance, f), rgb_scale(b->transmittance, 1.0f - f),
+                                ratio * ratio, out);
 }
 
 // The share of the energy: without the factor on radiance, which leaves it at most 1.
-static Rgb dielectric_albedo(const Bsdf *bsdf, Vec3 wo_l)
+static Rgb dielectric_albedo(const BsdfLobe *b, Vec3 wo)
 {
-    float cos_t, f = sheen_fresnel_dielectric(wo_l.z, bsdf->material->ior, &cos_t);
-    return rgb_mad(rgb_scale(bsdf->specular_reflectance, f), 1.0f - f, bsdf->specular_transmittance);
+    float cos_t, f = sheen_fresnel_dielectric(wo.z, b->material->ior, &cos_t);
+    return rgb_mad(rgb_scale(b->reflectance, f), 1.0f - f, b->transmittance);
 }
 
-const BsdfOps sheen_bsdf_dielectric = {.lobes = dielectric_lobes, .albedo = dielectric_albedo};
+static float dielectric_importance(const BsdfLobe *b, Vec3 wo)
+{
+    return rgb_max(dielectric_albedo(b, wo));
+}
+
+static void dielectric_roughen(BsdfLobe *b, float least_alpha)
+{
+    if (fabsf(b->material->ior - 1.0f) < 1e-3f) return; // nothing to be rough
+    b->ops = &sheen_lobe_rough_dielectric;
+    b->microfacet = (Microfacet){SHEEN_DISTRIBUTION_GGX, least_alpha, least_alpha};
+}
+
+const BsdfOps sheen_lobe_dielectric = {.class = SHEEN_BSDF_DELTA,
+                                       .lobes = dielectric_lobes,
+                                       .albedo = dielectric_albedo,
+                                       .importance = dielectric_importance,
+                                       .roughen = dielectric_roughen};

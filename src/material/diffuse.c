@@ -1,40 +1,95 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lambert's surface: f = reflectance / pi on the side of wo.
+// Lambert's surfaces: f = reflectance / pi on the side of wo, or transmittance / pi on the other.
 #include "material/bsdf_ops.h"
 #include "math/warp.h"
 
-static bool is_lit(const Bsdf *bsdf, float cos_o)
+bool sheen_bsdf_sample_cosine(const BsdfLobe *b, Vec3 wo, Vec2 u, BsdfSample *out)
 {
-    return cos_o > 0.0f || (bsdf->material->two_sided && cos_o < 0.0f);
-}
-
-static float diffuse_pdf(const Bsdf *bsdf, Vec3 wo_l, Vec3 wi_l)
-{
-    return is_lit(bsdf, wo_l.z) && wo_l.z * wi_l.z > 0.0f ? fabsf(wi_l.z) * SHEEN_INV_PI : 0.0f;
-}
-
-static Rgb diffuse_eval(const Bsdf *bsdf, Vec3 wo_l, Vec3 wi_l)
-{
-    // f |cos| is the reflectance times the density of cosine-weighted directions.
-    return rgb_scale(bsdf->reflectance, diffuse_pdf(bsdf, wo_l, wi_l));
-}
-
-static bool diffuse_sample(const Bsdf *bsdf, Vec3 wo_l, float lobe, Vec2 u, BsdfSample *out)
-{
-    (void)lobe;
-    if (!is_lit(bsdf, wo_l.z) || rgb_is_black(bsdf->reflectance)) return false;
-    Vec3 wi = warp_cosine_hemisphere(u);
-    if (!(wi.z > 0.0f)) return false; // the rim of the disk, in rounding: density 0
-    float pdf = wi.z * SHEEN_INV_PI;
-    if (wo_l.z < 0.0f) wi.z = -wi.z;
-    *out = (BsdfSample){.wi_l = wi, .weight = bsdf->reflectance, .pdf = pdf};
+    if (!(wo.z > 0.0f)) return false;
+    out->wi_l = warp_cosine_hemisphere(u);
+    if (!(out->wi_l.z > 0.0f)) return false; // the rim of the disk, in rounding: density 0
+    out->pdf = out->wi_l.z * SHEEN_INV_PI;
+    out->weight = rgb_scale(b->ops->eval(b, wo, out->wi_l), 1.0f / out->pdf);
     return true;
 }
 
-static Rgb diffuse_albedo(const Bsdf *bsdf, Vec3 wo_l)
+static float lambert_pdf(const BsdfLobe *b, Vec3 wo, Vec3 wi)
 {
-    return is_lit(bsdf, wo_l.z) ? bsdf->reflectance : rgb_gray(0.0f);
+    (void)b;
+    return bsdf_cosine_pdf(wo, wi);
 }
 
-const BsdfOps sheen_bsdf_diffuse = {
-    .eval = diffuse_eval, .pdf = diffuse_pdf, .sample = diffuse_sample, .albedo = diffuse_albedo};
+static Rgb lambert_eval(const BsdfLobe *b, Vec3 wo, Vec3 wi)
+{
+    // f |cos| is the reflectance times the density of cosine-weighted directions.
+    return rgb_scale(b->reflectance, bsdf_cosine_pdf(wo, wi));
+}
+
+static bool lambert_sample(const BsdfLobe *b, Vec3 wo, float choice, Vec2 u, BsdfSample *out)
+{
+    (void)choice;
+    if (rgb_is_black(b->reflectance) || !sheen_bsdf_sample_cosine(b, wo, u, out)) return false;
+    out->weight = b->reflectance; // without rounding
+    return true;
+}
+
+static Rgb lambert_albedo(const BsdfLobe *b, Vec3 wo)
+{
+    return wo.z > 0.0f ? b->reflectance : rgb_gray(0.0f);
+}
+
+static float lambert_importance(const BsdfLobe *b, Vec3 wo)
+{
+    return wo.z > 0.0f ? rgb_max(b->reflectance) : 0.0f;
+}
+
+const BsdfOps sheen_lobe_lambert = {.class = SHEEN_BSDF_DIFFUSE,
+                                    .eval = lambert_eval,
+                                    .pdf = lambert_pdf,
+                                    .sample = lambert_sample,
+                                    .albedo = lambert_albedo,
+                                    .importance = lambert_importance};
+
+// ---- transmission -----------------------------------------------------------------------------------------------
+
+static float transmit_pdf(const BsdfLobe *b, Vec3 wo, Vec3 wi)
+{
+    (void)b;
+    return wo.z * wi.z < 0.0f ? fabsf(wi.z) * SHEEN_INV_PI : 0.0f;
+}
+
+static Rgb transmit_eval(const BsdfLobe *b, Vec3 wo, Vec3 wi)
+{
+    return rgb_scale(b->transmittance, transmit_pdf(b, wo, wi));
+}
+
+static bool transmit_sample(const BsdfLobe *b, Vec3 wo, float choice, Vec2 u, BsdfSample *out)
+{
+    (void)choice;
+    Vec3 wi = warp_cosine_hemisphere(u);
+    if (!(wi.z > 0.0f) || wo.z == 0.0f || rgb_is_black(b->transmittance)) return false;
+    *out = (BsdfSample){.wi_l = v3(wi.x, wi.y, wo.z > 0.0f ? -wi.z : wi.z), .weight = b->transmittance};
+    out->pdf = wi.z * SHEEN_INV_PI;
+    return true;
+}
+
+static Rgb transmit_albedo(const BsdfLobe *b, Vec3 wo)
+{
+    (void)wo;
+    return b->transmittance;
+}
+
+static float transmit_importance(const BsdfLobe *b, Vec3 wo)
+{
+    (void)wo;
+    return rgb_max(b->transmittance);
+}
+
+// Not of the diffuse class: the irradiance that it scatters is that of the other side.
+const BsdfOps sheen_lobe_diffuse_transmit = {.class = SHEEN_BSDF_GLOSSY,
+                                             .transmits = true,
+                                             .eval = transmit_eval,
+                                             .pdf = transmit_pdf,
+                                             .sample = transmit_sample,
+                                             .albedo = transmit_albedo,
+                                             .importance = transmit_importance};

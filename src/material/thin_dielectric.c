@@ -3,23 +3,31 @@
 #include "material/bsdf_ops.h"
 
 // The series R + T R T + T R^3 T + ... of a pane that absorbs nothing, T = 1 - R, sums to 2 R / (1 + R).
-static float pane_reflectance(const Bsdf *bsdf, Vec3 wo_l)
+static float pane_reflectance(const BsdfLobe *b, Vec3 wo)
 {
-    float cos_t, r = sheen_fresnel_dielectric(fabsf(wo_l.z), bsdf->material->ior, &cos_t);
+    // A mask's lobe is straight passage; its material is the mask, which has no index.
+    if (b->material->kind != SHEEN_MATERIAL_THIN_DIELECTRIC) return 0.0f;
+    float cos_t, r = sheen_fresnel_dielectric(fabsf(wo.z), b->material->ior, &cos_t);
     return 2.0f * r / (1.0f + r);
 }
 
-static int thin_lobes(const Bsdf *bsdf, Vec3 wo_l, BsdfSample out[2])
+static int thin_lobes(const BsdfLobe *b, Vec3 wo, BsdfSample out[2])
 {
-    float r = pane_reflectance(bsdf, wo_l);
-    return bsdf_interface_lobes(wo_l, v3_neg(wo_l), rgb_scale(bsdf->specular_reflectance, r),
-                                rgb_scale(bsdf->specular_transmittance, 1.0f - r), 1.0f, out);
+    float r = pane_reflectance(b, wo);
+    return bsdf_interface_lobes(wo, v3_neg(wo), rgb_scale(b->reflectance, r), rgb_scale(b->transmittance, 1.0f - r),
+                                1.0f, out);
 }
 
-static Rgb thin_albedo(const Bsdf *bsdf, Vec3 wo_l)
+static Rgb thin_albedo(const BsdfLobe *b, Vec3 wo)
 {
-    float r = pane_reflectance(bsdf, wo_l);
-    return rgb_mad(rgb_scale(bsdf->specular_reflectance, r), 1.0f - r, bsdf->specular_transmittance);
+    float r = pane_reflectance(b, wo);
+    return rgb_mad(rgb_scale(b->reflectance, r), 1.0f - r, b->transmittance);
 }
 
-const BsdfOps sheen_bsdf_thin_dielectric = {.lobes = thin_lobes, .albedo = thin_albedo};
+static float thin_importance(const BsdfLobe *b, Vec3 wo)
+{
+    return rgb_max(thin_albedo(b, wo));
+}
+
+const BsdfOps sheen_lobe_thin_dielectric = {
+    .class = SHEEN_BSDF_DELTA, .lobes = thin_lobes, .albedo = thin_albedo, .importance = thin_importance};

@@ -21,6 +21,13 @@ typedef struct SurfacePoint {
 void sheen_surface_from_hit(const SheenScene *scene, const Ray *ray, const Hit *hit, SurfacePoint *out);
 
 /**
+ * How the surface moves with its texture coordinates: dp/du and dp/dv, world space, metres; v as in `s->uv`. Where a
+ * mesh has no texture coordinates, or degenerate ones, any two directions orthogonal to ng and each other, of length 1.
+ * For the few materials that need it; pure, thread-safe.
+ */
+void sheen_surface_tangents(const SheenScene *scene, const SurfacePoint *s, Vec3 *dpdu, Vec3 *dpdv);
+
+/**
  * @param n  geometric normal, on the side to which rays go
  * @return a point off the surface from which a ray on that side does not hit it again. The distance follows the
  * rounding of the coordinates and the size of the primitive, a few millionths of it, whatever the scale of the scene.

@@ -2,6 +2,7 @@
 #include "scene/builder.h"
 
 #include "scene/clean.h"
+#include "scene/material_check.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -87,7 +88,17 @@ uint32_t sheen_builder_add_material(SheenBuilder *b, const SheenMaterial *materi
 {
     SheenMaterial m = *material;
     if (!m.name) m.name = "";
+    SheenStatus s = sheen_material_complete(b->log, b->name, b->arena, b->materials.data, b->materials.n, &m);
+    if (s) {
+        if (!b->status) b->status = s;
+        return SHEEN_NONE;
+    }
     return list_add(b, &b->materials, &m, sizeof m);
+}
+
+const SheenMaterial *sheen_builder_material(const SheenBuilder *b, uint32_t index)
+{
+    return index < b->materials.n ? LIST_AT(b->materials, SheenMaterial, index) : NULL;
 }
 
 uint32_t sheen_builder_add_shape(SheenBuilder *b, const SheenShape *shape)

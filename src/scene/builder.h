@@ -24,7 +24,13 @@ SheenArena *sheen_builder_arena(SheenBuilder *builder);
 // Each add function copies the struct (not the arrays it points to) and returns its index, or SHEEN_NONE when out of
 // memory; the failure is remembered and returned by sheen_builder_commit, so that callers need not check each call.
 
+/**
+ * Checks and completes a material, see scene/material_check.h. `material->nested` are indices of earlier ones, others
+ * are the caller's mistake.
+ */
 uint32_t sheen_builder_add_material(SheenBuilder *builder, const SheenMaterial *material);
+/** @return a material that was added, valid until the next is added; NULL for SHEEN_NONE. */
+const SheenMaterial *sheen_builder_material(const SheenBuilder *builder, uint32_t index);
 /** The shape joins the open group, or the world when none is open. `shape->light` is ignored. */
 uint32_t sheen_builder_add_shape(SheenBuilder *builder, const SheenShape *shape);
 /** Makes `shape`, in the world group, emit `radiance` from its front side. */

@@ -5,6 +5,7 @@
 
 #include "math/bounds.h"
 #include "math/frame.h"
+#include "math/microfacet.h"
 #include "math/transform.h"
 #include "math/vec.h"
 #include "scene/texture.h"
@@ -71,17 +72,60 @@ typedef enum SheenMaterialKind {
     SHEEN_MATERIAL_CONDUCTOR,       // smooth metal: eta, k, specular_reflectance
     SHEEN_MATERIAL_DIELECTRIC,      // smooth glass: ior, specular_reflectance, specular_transmittance
     SHEEN_MATERIAL_THIN_DIELECTRIC, // a pane without thickness: the same parameters
+    SHEEN_MATERIAL_ROUGH_CONDUCTOR, // metal of microfacets: as conductor, and distribution, alpha_u, alpha_v
+    SHEEN_MATERIAL_ROUGH_DIELECTRIC,
+    SHEEN_MATERIAL_PLASTIC, // a smooth interface on a diffuse base: ior, reflectance, specular_reflectance, nonlinear
+    SHEEN_MATERIAL_ROUGH_PLASTIC,    // the same, and distribution and alpha_u for both axes
+    SHEEN_MATERIAL_DIFFUSE_TRANSMIT, // Lambertian toward the other side: specular_transmittance
+    SHEEN_MATERIAL_PHONG,            // reflectance, specular_reflectance, exponent
+    SHEEN_MATERIAL_WARD,             // reflectance, specular_reflectance, alpha_u, alpha_v, ward
+    SHEEN_MATERIAL_PRINCIPLED,       // reflectance (the base colour), ior, alpha_u (the roughness), principled
+    // Materials that hold others.
+    SHEEN_MATERIAL_BLEND,   // 1 - weight of nested[0] and weight of nested[1]
+    SHEEN_MATERIAL_SIDES,   // nested[0] on the front, nested[1] on the back, seen as if that were the front
+    SHEEN_MATERIAL_MASK,    // weight of nested[0], the rest goes straight through
+    SHEEN_MATERIAL_BUMP,    // nested[0] on a surface raised by map, metres, times map_scale
+    SHEEN_MATERIAL_NORMAL,  // nested[0] about the normals of map, (colour + 1) / 2 in the frame of normal and dp/du
+    SHEEN_MATERIAL_COATING, // nested[0] under a smooth interface: ior, absorption, specular_reflectance
+    SHEEN_MATERIAL_ROUGH_COATING, // the same, and distribution and alpha_u for both axes
 } SheenMaterialKind;
+
+/** A material has at most so many elementary BSDFs and wrappers: they are looked up in shading, on the stack. */
+enum { SHEEN_MATERIAL_MAX_LOBES = 8, SHEEN_MATERIAL_MAX_WRAPS = 8 };
+
+typedef enum SheenWard { SHEEN_WARD_BALANCED, SHEEN_WARD_DUER, SHEEN_WARD_ORIGINAL } SheenWard;
+
+/** What a principled material has beyond the others' parameters; all in [0, 1]. */
+typedef struct SheenPrincipled {
+    SheenTexture anisotropic, metallic, spec_trans, spec_tint, sheen, sheen_tint, flatness, clearcoat, clearcoat_gloss;
+} SheenPrincipled;
 
 typedef struct SheenMaterial {
     SheenMaterialKind kind;
-    bool two_sided;                      // the back side looks like the front (not for dielectrics)
+    bool two_sided;                      // the back side looks like the front (not where something transmits)
+    bool nonlinear;                      // plastics: colour shifts by light that is reflected inside
     SheenTexture reflectance;            // diffuse albedo
     SheenTexture specular_reflectance;   // factor on reflection
     SheenTexture specular_transmittance; // factor on transmission
     Rgb eta, k;                          // conductor: complex refractive index relative to outside
     float ior;                           // dielectric: interior over exterior refractive index
+    SheenDistribution distribution;      // of microfacets
+    SheenTexture alpha_u, alpha_v;       // their roughness along dp/du and across; the luminance counts
+    float exponent;                      // phong
+    SheenWard ward;                      // which of the formulas
+    Rgb absorption;                      // coating: of a perpendicular way through, absorption coefficient x thickness
+    SheenTexture weight;                 // blend, mask; the luminance counts
+    SheenTexture map;                    // bump: height, its luminance; normal: the normals
+    float map_scale;                     // bump: factor on the height
+    uint32_t nested[2];                  // index of materials that were added before
+    const SheenPrincipled *principled;   // in the builder's arena; NULL for other kinds
     const char *name;                    // id in the scene file or plugin name; never NULL
+    // Completed by the builder:
+    const struct SheenCoat *coat; // rough interfaces with something below: what they let through
+    float inside;                 // plastic: reflectance of the interface for diffuse light from below
+    uint32_t n_lobes, n_wraps;    // elementary BSDFs that it consists of, and wrappers around them
+    bool anisotropic;             // alpha_u and alpha_v differ: shading needs dp/du
+    bool has_two_sides;           // some of it is an interface between two media
 } SheenMaterial;
 
 // ---- lights -----------------------------------------------------------------------------------------------------

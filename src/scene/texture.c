@@ -73,6 +73,26 @@ Rgb sheen_texture_eval(const SheenTexture *t, Vec2 uv)
     return right == top ? t->value : t->value2;
 }
 
+Vec2 sheen_texture_gradient(const SheenTexture *t, Vec2 uv)
+{
+    const SheenBitmap *b = &t->bitmap;
+    if (t->kind != SHEEN_TEXTURE_BITMAP || t->nearest) return v2(0.0f, 0.0f);
+    float u = t->uv[0][0] * uv.x + t->uv[0][1] * uv.y + t->uv[0][2];
+    float v = t->uv[1][0] * uv.x + t->uv[1][1] * uv.y + t->uv[1][2];
+    float x = fold(u, t->wrap) * (float)b->width - 0.5f, y = (1.0f - fold(v, t->wrap)) * (float)b->height - 0.5f;
+    float fx = floorf(x), fy = floorf(y), ax = x - fx, ay = y - fy;
+    uint32_t x0 = wrap_index((int64_t)fx, b->width, t->wrap), x1 = wrap_index((int64_t)fx + 1, b->width, t->wrap);
+    uint32_t y0 = wrap_index((int64_t)fy, b->height, t->wrap), y1 = wrap_index((int64_t)fy + 1, b->height, t->wrap);
+    float a = rgb_luminance(texel(b, x0, y0)), c = rgb_luminance(texel(b, x1, y0));
+    float d = rgb_luminance(texel(b, x0, y1)), e = rgb_luminance(texel(b, x1, y1));
+    float du = lerpf(c - a, e - d, ay) * (float)b->width, dv = -lerpf(d - a, e - c, ax) * (float)b->height;
+    if (t->wrap == SHEEN_WRAP_MIRROR) { // odd periods run backward
+        if (fmodf(fabsf(floorf(u)), 2.0f) == 1.0f) du = -du;
+        if (fmodf(fabsf(floorf(v)), 2.0f) == 1.0f) dv = -dv;
+    }
+    return v2(du * t->uv[0][0] + dv * t->uv[1][0], du * t->uv[0][1] + dv * t->uv[1][1]);
+}
+
 static Rgb mean_of_bitmap(const SheenBitmap *b)
 {
     double sum[3] = {0.0, 0.0, 0.0};

@@ -41,6 +41,12 @@ SheenTexture sheen_texture_constant(Rgb value);
  */
 Rgb sheen_texture_eval(const SheenTexture *t, Vec2 uv);
 
+/**
+ * @return how the texture's luminance changes with u and v: the exact derivative of the bilinear interpolation; zero
+ * for constants, checkerboards and `nearest`. Pure, thread-safe.
+ */
+Vec2 sheen_texture_gradient(const SheenTexture *t, Vec2 uv);
+
 /** @return the mean of the texture over the unit square of uv' (exact for constants and bitmaps). */
 Rgb sheen_texture_mean(const SheenTexture *t);
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much light an interface between two media reflects. Unpolarized: the mean of both polarizations.
-#include "material/bsdf.h"
+#include "math/fresnel.h"
 
 // Source: born1999, sec. 1.5.2.
 float sheen_fresnel_dielectric(float cos_i, float eta, float *cos_t)
@@ -32,4 +31,20 @@ float sheen_fresnel_conductor(float cos_i, float eta, float k)
     float rp = rs * (p - q) / (p + q);
     float r = 0.5f * (rs + rp);
     return r >= 0.0f && r <= 1.0f ? r : 1.0f; // 0 / 0 of a metal without index, infinite indices
+}
+
+// By the midpoint rule. Beyond the critical angle, where the integrand bends, the integral is known: F is 1.
+float sheen_fresnel_diffuse(float eta)
+{
+    enum { STEPS = 256 };
+    if (!(eta > 0.0f) || !isfinite(eta)) return 1.0f;
+    double total = eta < 1.0f ? 1.0 - (double)eta * (double)eta : 0.0; // share of sin^2 that is reflected totally
+    double sum = 0.0;
+    for (int i = 0; i < STEPS; ++i) {
+        // x^2 crowds the steps where the reflectance rises fastest, at the smallest cosines.
+        double x = (i + 0.5) / STEPS, s2 = (1.0 - total) * (1.0 - x * x * x * x);
+        float cos_t, cosine = (float)sqrt(1.0 - s2);
+        sum += (double)sheen_fresnel_dielectric(cosine, eta, &cos_t) * 4.0 * x * x * x;
+    }
+    return minf((float)(total + (1.0 - total) * sum / STEPS), 1.0f);
 }
