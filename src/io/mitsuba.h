@@ -32,6 +32,7 @@ typedef struct Mitsuba {
     int version;    // major
     bool with_files;
     MitsubaBitmap *bitmaps;
+    int material_depth; // of the materials inside each other that are being read
     SheenStatus status;
 } Mitsuba;
 
@@ -102,8 +103,23 @@ const char *sheen_mi_path(Mitsuba *m, const SheenXml *e, const char *property, c
 
 /** mitsuba_texture.c: a property that is a colour or a texture. Reflectances are clamped to [0, 1] with a warning. */
 SheenTexture sheen_mi_texture(Mitsuba *m, const SheenXml *e, const char *name, Rgb otherwise);
+/** The same of the element itself, resolved. */
+SheenTexture sheen_mi_texture_of(Mitsuba *m, SheenXml *value, Rgb otherwise);
+/** A property that is a number or a texture; a number outside [lo, hi] is clamped with a warning. */
+SheenTexture sheen_mi_factor(Mitsuba *m, const SheenXml *e, const char *name, float otherwise, float lo, float hi);
 /** A picture file, read once for all who use it. `floats` for environments. @return false after an error. */
 bool sheen_mi_bitmap(Mitsuba *m, const SheenXml *e, bool floats, double gamma, SheenBitmap *out);
+
+/** What a reader of a material fills in. */
+typedef void SheenMitsubaMaterialFn(Mitsuba *m, SheenXml *e, SheenMaterial *out);
+/** mitsuba_layers.c: materials that hold others. */
+SheenMitsubaMaterialFn sheen_mi_twosided, sheen_mi_blend, sheen_mi_mixture, sheen_mi_mask, sheen_mi_bumpmap,
+    sheen_mi_normalmap, sheen_mi_coating, sheen_mi_roughcoating;
+/** mitsuba_bsdf.c: diffuse 0.5; reads a <bsdf> into *out; and parts that layers have too. */
+SheenMaterial sheen_mi_default_material(void);
+void sheen_mi_read_material(Mitsuba *m, SheenXml *e, SheenMaterial *out);
+float sheen_mi_relative_ior(Mitsuba *m, const SheenXml *e, double inside);
+void sheen_mi_roughness(Mitsuba *m, SheenXml *e, SheenMaterial *out);
 
 /** mitsuba_bsdf.c: the material of a <bsdf>, made when first asked for; NULL is Mitsuba's default, diffuse 0.5. */
 uint32_t sheen_mi_material(Mitsuba *m, SheenXml *bsdf);

@@ -6,22 +6,22 @@
 #include <stdio.h>
 #include <string.h>
 
-typedef void ReadFn(Mitsuba *m, SheenXml *e, SheenMaterial *out);
+enum { MAX_DEPTH = 32 }; // of materials inside each other
 
 typedef struct Plugin {
     const char *name;
-    ReadFn *read;
+    SheenMitsubaMaterialFn *read;
     const char *stand_in; // what is used instead; NULL when the plugin is supported
 } Plugin;
 
-static void read_material(Mitsuba *m, SheenXml *e, SheenMaterial *out);
-
-static SheenMaterial diffuse(Rgb reflectance)
+SheenMaterial sheen_mi_default_material(void)
 {
     return (SheenMaterial){.kind = SHEEN_MATERIAL_DIFFUSE,
-                           .reflectance = sheen_texture_constant(reflectance),
+                           .reflectance = sheen_texture_constant(rgb_gray(0.5f)),
                            .specular_reflectance = sheen_texture_constant(rgb_gray(1.0f)),
                            .specular_transmittance = sheen_texture_constant(rgb_gray(1.0f)),
+                           .alpha_u = sheen_texture_constant(rgb_gray(0.1f)),
+                           .alpha_v = sheen_texture_constant(rgb_gray(0.1f)),
                            .ior = 1.0f};
 }
 
@@ -30,10 +30,9 @@ static void read_diffuse(Mitsuba *m, SheenXml *e, SheenMaterial *out)
     out->reflectance = sheen_mi_texture(m, e, "reflectance", rgb_gray(0.5f));
 }
 
-/** plastic, phong, ward: their diffuse part. */
-static void read_diffuse_part(Mitsuba *m, SheenXml *e, SheenMaterial *out)
+static void read_base_color(Mitsuba *m, SheenXml *e, SheenMaterial *out)
 {
-    out->reflectance = sheen_mi_texture(m, e, "diffuse_reflectance", rgb_gray(0.5f));
+    out->reflectance = sheen_mi_texture(m, e, "base_color", rgb_gray(0.5f));
 }
 
 static void read_gray(Mitsuba *m, SheenXml *e, SheenMaterial *out)
@@ -76,12 +75,44 @@ static double read_ior(Mitsuba *m, const SheenXml *e, const char *property, doub
     return ior;
 }
 
+float sheen_mi_relative_ior(Mitsuba *m, const SheenXml *e, double inside)
+{
+    return (float)(read_ior(m, e, "int_ior", inside) / read_ior(m, e, "ext_ior", 1.000277));
+}
+
+// ---- microfacets ------------------------------------------------------------------------------------------------
+
+/** Distribution and roughness; alpha_u and alpha_v stand before alpha. */
+void sheen_mi_roughness(Mitsuba *m, SheenXml *e, SheenMaterial *out)
+{
+    const char *name = sheen_mi_string(m, e, "distribution", "beckmann");
+    if (sheen_mi_same(name, "ggx"))
+        out->distribution = SHEEN_DISTRIBUTION_GGX;
+    else if (!sheen_mi_same(name, "beckmann") && !e->warned)
+        sheen_xml_warn(m->log, e, "the distribution '%s' is not supported: 'beckmann' stands in", name);
+    out->alpha_u = out->alpha_v = sheen_mi_factor(m, e, "alpha", 0.1f, SHEEN_ALPHA_MIN, SHEEN_ALPHA_MAX);
+    if (sheen_mi_child(e, "alpha_u"))
+        out->alpha_u = sheen_mi_factor(m, e, "alpha_u", 0.1f, SHEEN_ALPHA_MIN, SHEEN_ALPHA_MAX);
+    if (sheen_mi_child(e, "alpha_v"))
+        out->alpha_v = sheen_mi_factor(m, e, "alpha_v", 0.1f, SHEEN_ALPHA_MIN, SHEEN_ALPHA_MAX);
+    sheen_mi_ignore(e, "sample_visible specular_sampling_weight"); // how Mitsuba draws samples
+}
+
+// ---- interfaces -------------------------------------------------------------------------------------------------
+
 static void read_dielectric(Mitsuba *m, SheenXml *e, SheenMaterial *out)
 {
     out->kind = SHEEN_MATERIAL_DIELECTRIC;
-    out->ior = (float)(read_ior(m, e, "int_ior", 1.5046) / read_ior(m, e, "ext_ior", 1.000277));
+    out->ior = sheen_mi_relative_ior(m, e, 1.5046);
     out->specular_reflectance = sheen_mi_texture(m, e, "specular_reflectance", rgb_gray(1.0f));
     out->specular_transmittance = sheen_mi_texture(m, e, "specular_transmittance", rgb_gray(1.0f));
+}
+
+static void read_rough_dielectric(Mitsuba *m, SheenXml *e, SheenMaterial *out)
+{
+    read_dielectric(m, e, out);
+    sheen_mi_roughness(m, e, out);
+    out->kind = SHEEN_MATERIAL_ROUGH_DIELECTRIC;
 }
 
 static void read_thin_dielectric(Mitsuba *m, SheenXml *e, SheenMaterial *out)
@@ -90,11 +121,18 @@ static void read_thin_dielectric(Mitsuba *m, SheenXml *e, SheenMaterial *out)
     out->kind = SHEEN_MATERIAL_THIN_DIELECTRIC;
 }
 
+/** Passage without any change: a pane of the index of its surroundings. */
 static void read_null(Mitsuba *m, SheenXml *e, SheenMaterial *out)
 {
     (void)m, (void)e;
     out->kind = SHEEN_MATERIAL_THIN_DIELECTRIC;
     out->ior = 1.0f;
+}
+
+static void read_difftrans(Mitsuba *m, SheenXml *e, SheenMaterial *out)
+{
+    out->kind = SHEEN_MATERIAL_DIFFUSE_TRANSMIT;
+    out->specular_transmittance = sheen_mi_texture(m, e, "transmittance", rgb_gray(0.5f));
 }
 
 /** eta and k, or a material's name; without either Mitsuba 3 has a perfect mirror and 0.5 and 0.6 have copper. */
@@ -116,85 +154,154 @@ static void read_conductor(Mitsuba *m, SheenXml *e, SheenMaterial *out)
     out->specular_reflectance = sheen_mi_texture(m, e, "specular_reflectance", rgb_gray(1.0f));
 }
 
-/** The mean of a property that is a number or a texture. */
-static float read_mean(Mitsuba *m, SheenXml *e, const char *property, float otherwise)
+static void read_rough_conductor(Mitsuba *m, SheenXml *e, SheenMaterial *out)
 {
-    SheenTexture t = sheen_mi_texture(m, e, property, rgb_gray(otherwise));
-    return rgb_luminance(sheen_texture_mean(&t));
+    read_conductor(m, e, out);
+    sheen_mi_roughness(m, e, out);
+    out->kind = SHEEN_MATERIAL_ROUGH_CONDUCTOR;
+}
+
+static void read_plastic(Mitsuba *m, SheenXml *e, SheenMaterial *out)
+{
+    out->kind = SHEEN_MATERIAL_PLASTIC;
+    out->ior = sheen_mi_relative_ior(m, e, 1.49);
+    out->reflectance = sheen_mi_texture(m, e, "diffuse_reflectance", rgb_gray(0.5f));
+    out->specular_reflectance = sheen_mi_texture(m, e, "specular_reflectance", rgb_gray(1.0f));
+    out->nonlinear = sheen_mi_bool(m, e, "nonlinear", false);
+    sheen_mi_ignore(e, "specular_sampling_weight");
+}
+
+static void read_rough_plastic(Mitsuba *m, SheenXml *e, SheenMaterial *out)
+{
+    read_plastic(m, e, out);
+    sheen_mi_roughness(m, e, out);
+    out->kind = SHEEN_MATERIAL_ROUGH_PLASTIC;
+}
+
+// ---- empirical models -------------------------------------------------------------------------------------------
+
+/** Both parts together reflect no more than all, as far as that is known from constants. */
+static void conserve_energy(Mitsuba *m, SheenXml *e, SheenMaterial *out)
+{
+    SheenTexture *d = &out->reflectance, *s = &out->specular_reflectance;
+    if (d->kind != SHEEN_TEXTURE_CONSTANT || s->kind != SHEEN_TEXTURE_CONSTANT) return;
+    float sum = rgb_max(rgb_add(d->value, s->value));
+    if (!(sum > 1.0f)) return;
+    if (!e->warned)
+        sheen_xml_warn(m->log, e, "the material reflects %g times the light: both parts are scaled down", (double)sum);
+    d->value = rgb_scale(d->value, 0.99f / sum);
+    s->value = rgb_scale(s->value, 0.99f / sum);
+}
+
+static void read_phong(Mitsuba *m, SheenXml *e, SheenMaterial *out)
+{
+    out->kind = SHEEN_MATERIAL_PHONG;
+    out->reflectance = sheen_mi_texture(m, e, "diffuse_reflectance", rgb_gray(0.5f));
+    out->specular_reflectance = sheen_mi_texture(m, e, "specular_reflectance", rgb_gray(0.2f));
+    const SheenTexture exponent = sheen_mi_factor(m, e, "exponent", 30.0f, 0.0f, 1e6f);
+    if (exponent.kind == SHEEN_TEXTURE_BITMAP)
+        sheen_xml_warn(m->log, e, "a textured exponent is not supported: its mean stands in");
+    out->exponent = rgb_luminance(sheen_texture_mean(&exponent));
+    conserve_energy(m, e, out);
+}
+
+static void read_ward(Mitsuba *m, SheenXml *e, SheenMaterial *out)
+{
+    static const char *const names[] = {"balanced", "ward-duer", "ward"};
+    out->kind = SHEEN_MATERIAL_WARD;
+    out->reflectance = sheen_mi_texture(m, e, "diffuse_reflectance", rgb_gray(0.5f));
+    out->specular_reflectance = sheen_mi_texture(m, e, "specular_reflectance", rgb_gray(0.2f));
+    const char *variant = sheen_mi_string(m, e, "variant", "balanced");
+    bool known = false;
+    for (int i = 0; i < 3; ++i)
+        if (sheen_mi_same(variant, names[i])) out->ward = (SheenWard)i, known = true;
+    if (!known && !e->warned) sheen_xml_warn(m->log, e, "the variant '%s' is not known: 'balanced' stands in", variant);
+    sheen_mi_roughness(m, e, out);
+    conserve_energy(m, e, out);
+}
+
+// ---- principled -------------------------------------------------------------------------------------------------
+
+/** The index from `eta`, or from `specular`, the reflectance at normal incidence over 0.08. */
+static float principled_ior(Mitsuba *m, SheenXml *e, bool glass)
+{
+    bool has_eta = sheen_mi_child(e, "eta") != NULL;
+    SheenXml *specular_child = sheen_mi_child(e, "specular");
+    if (has_eta && specular_child && !e->warned)
+        sheen_xml_warn(m->log, specular_child, "'specular' is ignored beside 'eta'");
+    SheenTexture specular = sheen_mi_factor(m, e, "specular", 0.5f, 0.0f, 1.0f);
+    float s = maxf(rgb_luminance(sheen_texture_mean(&specular)), glass ? 1e-3f : 0.0f);
+    float eta = 2.0f / (1.0f - sqrtf(0.08f * s)) - 1.0f;
+    if (has_eta) eta = (float)read_ior(m, e, "eta", 1.5);
+    return glass && fabsf(eta - 1.0f) < 1e-3f ? 1.001f : eta;
 }
 
 static void read_principled(Mitsuba *m, SheenXml *e, SheenMaterial *out)
 {
-    SheenTexture color = sheen_mi_texture(m, e, "base_color", rgb_gray(0.5f));
-    if (read_mean(m, e, "metallic", 0.0f) > 0.5f) {
-        out->kind = SHEEN_MATERIAL_CONDUCTOR;
-        (void)sheen_metal_find("none", &out->eta, &out->k);
-        out->specular_reflectance = color;
-    } else if (read_mean(m, e, "spec_trans", 0.0f) > 0.5f) {
-        out->kind = SHEEN_MATERIAL_DIELECTRIC;
-        out->ior = (float)read_ior(m, e, "eta", 1.5);
-        out->specular_transmittance = color;
-    } else {
-        out->reflectance = color;
+    SheenPrincipled *p = SHEEN_ARENA_NEW(m->arena, SheenPrincipled, 1);
+    if (!p) {
+        sheen_mi_fail(m, SHEEN_ERR_NOMEM, e, "out of memory");
+        return;
     }
+    out->kind = SHEEN_MATERIAL_PRINCIPLED;
+    out->principled = p;
+    out->reflectance = sheen_mi_texture(m, e, "base_color", rgb_gray(0.5f));
+    out->alpha_u = sheen_mi_factor(m, e, "roughness", 0.5f, 0.0f, 1.0f);
+    const struct {
+        const char *name;
+        SheenTexture *texture;
+    } numbers[] = {
+        {"anisotropic", &p->anisotropic}, {"metallic", &p->metallic},   {"spec_trans", &p->spec_trans},
+        {"spec_tint", &p->spec_tint},     {"sheen", &p->sheen},         {"sheen_tint", &p->sheen_tint},
+        {"flatness", &p->flatness},       {"clearcoat", &p->clearcoat}, {"clearcoat_gloss", &p->clearcoat_gloss}};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; ++i)
+        *numbers[i].texture = sheen_mi_factor(m, e, numbers[i].name, 0.0f, 0.0f, 1.0f);
+    out->ior = principled_ior(m, e, sheen_mi_child(e, "spec_trans") != NULL);
+    sheen_mi_ignore(e, "diffuse_reflectance_sampling_rate main_specular_sampling_rate clearcoat_sampling_rate");
 }
 
-// ---- plugins that hold others -----------------------------------------------------------------------------------
-
-static void read_nested(Mitsuba *m, SheenXml *e, SheenMaterial *out)
-{
-    SheenXml *nested = sheen_mi_nested(m, e, "bsdf");
-    if (nested)
-        read_material(m, nested, out);
-    else if (!m->status)
-        sheen_xml_warn(m->log, e, "no material inside '%s': diffuse 0.5 stands in", sheen_mi_type(e));
-}
-
-static void read_two_sided(Mitsuba *m, SheenXml *e, SheenMaterial *out)
-{
-    read_nested(m, e, out);
-    if (out->kind == SHEEN_MATERIAL_DIELECTRIC || out->kind == SHEEN_MATERIAL_THIN_DIELECTRIC) {
-        if (!e->warned)
-            sheen_xml_warn(m->log, e, "a material that transmits has two sides already: 'twosided' ignored");
-    } else {
-        out->two_sided = true;
-    }
-}
+// ---- all materials ----------------------------------------------------------------------------------------------
 
 static const Plugin plugins[] = {
     {"diffuse", read_diffuse, NULL},
     {"conductor", read_conductor, NULL},
     {"dielectric", read_dielectric, NULL},
     {"thindielectric", read_thin_dielectric, NULL},
-    {"twosided", read_two_sided, NULL},
+    {"roughconductor", read_rough_conductor, NULL},
+    {"roughdielectric", read_rough_dielectric, NULL},
+    {"plastic", read_plastic, NULL},
+    {"roughplastic", read_rough_plastic, NULL},
+    {"phong", read_phong, NULL},
+    {"ward", read_ward, NULL},
+    {"principled", read_principled, NULL},
+    {"difftrans", read_difftrans, NULL},
+    {"null", read_null, NULL},
+    {"twosided", sheen_mi_twosided, NULL},
+    {"blendbsdf", sheen_mi_blend, NULL},
+    {"mixturebsdf", sheen_mi_mixture, NULL},
+    {"mask", sheen_mi_mask, NULL},
+    {"bumpmap", sheen_mi_bumpmap, NULL},
+    {"bump", sheen_mi_bumpmap, NULL},
+    {"normalmap", sheen_mi_normalmap, NULL},
+    {"coating", sheen_mi_coating, NULL},
+    {"roughcoating", sheen_mi_roughcoating, NULL},
     {"roughdiffuse", read_diffuse, "a smooth diffuse surface"},
-    {"roughconductor", read_conductor, "a smooth conductor"},
-    {"roughdielectric", read_dielectric, "a smooth dielectric"},
-    {"plastic", read_diffuse_part, "its diffuse part"},
-    {"roughplastic", read_diffuse_part, "its diffuse part"},
-    {"phong", read_diffuse_part, "its diffuse part"},
-    {"ward", read_diffuse_part, "its diffuse part"},
-    {"principled", read_principled, "a diffuse surface, a mirror or glass of its base colour"},
-    {"principledthin", read_principled, "a diffuse surface of its base colour"},
-    {"mask", read_nested, "the opaque material in it"},
-    {"bumpmap", read_nested, "the smooth material in it"},
-    {"bump", read_nested, "the smooth material in it"},
-    {"normalmap", read_nested, "the smooth material in it"},
-    {"coating", read_nested, "the material under the coating"},
-    {"roughcoating", read_nested, "the material under the coating"},
-    {"blendbsdf", read_nested, "the first material in it"},
-    {"mixturebsdf", read_nested, "the first material in it"},
-    {"null", read_null, "a pane of refractive index 1"},
+    {"principledthin", read_base_color, "a diffuse surface of its base colour"},
 };
 
-static void read_material(Mitsuba *m, SheenXml *e, SheenMaterial *out)
+void sheen_mi_read_material(Mitsuba *m, SheenXml *e, SheenMaterial *out)
 {
     static const Plugin unknown = {"", read_gray, "diffuse 0.5"};
     if (e->busy) {
         sheen_mi_fail(m, SHEEN_ERR_PARSE, e, "the material refers to itself");
         return;
     }
+    if (m->material_depth >= MAX_DEPTH) {
+        sheen_mi_fail(m, SHEEN_ERR_PARSE, e, "more than %d materials lie inside each other", MAX_DEPTH);
+        return;
+    }
     e->busy = true;
+    ++m->material_depth;
     const char *type = sheen_mi_type(e);
     const Plugin *plugin = &unknown;
     for (size_t i = 0; i < sizeof plugins / sizeof *plugins; ++i)
@@ -205,11 +312,12 @@ static void read_material(Mitsuba *m, SheenXml *e, SheenMaterial *out)
     if (!plugin->stand_in) sheen_mi_report_unused(m, e); // of a stand-in, much is unused
     e->warned = true;
     e->busy = false;
+    --m->material_depth;
 }
 
 uint32_t sheen_mi_material(Mitsuba *m, SheenXml *bsdf)
 {
-    SheenMaterial material = diffuse(rgb_gray(0.5f));
+    SheenMaterial material = sheen_mi_default_material();
     if (!bsdf) {
         // The default has no element; the root, never a material, remembers it.
         if (m->root->index == SHEEN_NONE) {
@@ -219,7 +327,8 @@ uint32_t sheen_mi_material(Mitsuba *m, SheenXml *bsdf)
         return m->root->index;
     }
     if (bsdf->index != SHEEN_NONE) return bsdf->index;
-    read_material(m, bsdf, &material);
+    sheen_mi_read_material(m, bsdf, &material);
+    if (m->status) return SHEEN_NONE;
     const char *id = sheen_xml_attribute(bsdf, "id");
     material.name = sheen_arena_strdup(m->arena, id ? id : sheen_mi_type(bsdf));
     bsdf->index = sheen_builder_add_material(m->builder, &material);

@@ -186,3 +186,18 @@ SheenTexture sheen_mi_texture(Mitsuba *m, const SheenXml *e, const char *name, R
     SheenXml *value = c ? sheen_mi_resolve(m, c) : NULL;
     return value ? sheen_mi_texture_of(m, value, otherwise) : sheen_texture_constant(otherwise);
 }
+
+SheenTexture sheen_mi_factor(Mitsuba *m, const SheenXml *e, const char *name, float otherwise, float lo, float hi)
+{
+    SheenXml *c = sheen_mi_child(e, name);
+    SheenXml *value = c ? sheen_mi_resolve(m, c) : NULL;
+    if (!value) return sheen_texture_constant(rgb_gray(otherwise));
+    if (strcmp(value->tag, "float") != 0 && strcmp(value->tag, "integer") != 0)
+        return sheen_mi_texture_of(m, value, rgb_gray(otherwise));
+    value->used = true;
+    float x = (float)sheen_mi_float(m, e, name, (double)otherwise), good = clampf(x, lo, hi);
+    if (good != x)
+        sheen_xml_warn(m->log, c, "'%s' is %g, outside [%g, %g]: taken as %g", name, (double)x, (double)lo, (double)hi,
+                       (double)good);
+    return sheen_texture_constant(rgb_gray(good));
+}

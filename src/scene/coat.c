@@ -3,9 +3,9 @@
 
 #include "math/fresnel.h"
 
-// Reflectance of the interface for light from v: the mean over visible normals of Fresnel's reflectance times the share
-// that is not shadowed on the way out. eta: index beyond over index on the side of v.
-static float reflectance(const Microfacet *s, float eta, float cosine)
+// Share of the light from v that a single scattering sends back (`reflected`) or through: the mean over visible normals
+// of Fresnel's share times that which is not shadowed on the way out. eta: index beyond over index on the side of v.
+static float share(const Microfacet *s, float eta, float cosine, bool reflected)
 {
     enum { SIDE = 24 };
     Vec3 v = v3(safe_sqrtf(1.0f - cosine * cosine), 0.0f, cosine);
@@ -13,9 +13,10 @@ static float reflectance(const Microfacet *s, float eta, float cosine)
     for (int i = 0; i < SIDE * SIDE; ++i) {
         Vec2 u = v2(((float)(i / SIDE) + 0.5f) / SIDE, ((float)(i % SIDE) + 0.5f) / SIDE);
         Vec3 m = sheen_microfacet_sample(s, v, u), out = v3_reflect(v, m);
-        if (!(out.z > 0.0f)) continue;
-        float cos_t;
-        sum += (double)(sheen_fresnel_dielectric(v3_dot(v, m), eta, &cos_t) * sheen_microfacet_g1(s, out, m));
+        float cos_t, c = v3_dot(v, m), f = sheen_fresnel_dielectric(c, eta, &cos_t);
+        if (!reflected) out = v3_mad(v3_scale(v, -1.0f / eta), c / eta + cos_t, m);
+        if ((out.z > 0.0f) == reflected)
+            sum += (double)((reflected ? f : 1.0f - f) * sheen_microfacet_g1(s, out, m));
     }
     return clampf((float)(sum / (SIDE * SIDE)), 0.0f, 1.0f);
 }
@@ -26,9 +27,9 @@ static void fill_row(SheenCoat *c, uint32_t row, float alpha)
     double inside = 0.0;
     for (int i = 0; i < SHEEN_COAT_COSINES; ++i) {
         float cosine = maxf((float)i / (SHEEN_COAT_COSINES - 1), 1e-4f);
-        c->transmittance[row][i] = 1.0f - reflectance(&s, c->ior, cosine);
+        c->transmittance[row][i] = share(&s, c->ior, cosine, false);
         float middle = ((float)i + 0.5f) / SHEEN_COAT_COSINES;
-        inside += 2.0 * (double)(middle * reflectance(&s, 1.0f / c->ior, middle)) / SHEEN_COAT_COSINES;
+        inside += 2.0 * (double)(middle * share(&s, 1.0f / c->ior, middle, true)) / SHEEN_COAT_COSINES;
     }
     // Below 1, so that what bounces inside has a finite sum.
     c->inside[row] = clampf((float)inside, 0.0f, 0.999f);
@@ -56,20 +57,20 @@ const SheenCoat *sheen_coat_create(SheenArena *arena, float ior, SheenDistributi
 }
 
 // Where x lies among n entries: the lower one, and the share of the upper one.
-static uint32_t locate(float x, uint32_t n, float *share)
+static uint32_t locate(float x, uint32_t n, float *upper)
 {
     float at = clampf(x, 0.0f, 1.0f) * (float)(n - 1);
     uint32_t i = (uint32_t)at;
     if (i > n - 2) i = n - 2;
-    *share = at - (float)i;
+    *upper = at - (float)i;
     return i;
 }
 
-static uint32_t row_of(const SheenCoat *c, float alpha, float *share)
+static uint32_t row_of(const SheenCoat *c, float alpha, float *upper)
 {
-    *share = 0.0f;
+    *upper = 0.0f;
     if (c->n_alphas == 1) return 0;
-    return locate((alpha - c->alpha_min) / (c->alpha_max - c->alpha_min), c->n_alphas, share);
+    return locate((alpha - c->alpha_min) / (c->alpha_max - c->alpha_min), c->n_alphas, upper);
 }
 
 float sheen_coat_transmittance(const SheenCoat *c, float alpha, float cosine)

@@ -21,7 +21,7 @@ typedef struct SheenCoat {
 } SheenCoat;
 
 /**
- * Tabulates 1 minus the single-scattering reflectance of the interface: about 5 ms a roughness.
+ * Tabulates what microfacets let through and reflect by single scattering: about 10 ms a roughness.
  * @param alpha_min, alpha_max  range of the roughness; one row when they are equal
  * @return NULL when out of memory
  */
