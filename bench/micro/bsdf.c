@@ -5,8 +5,8 @@
 //
 // Each line of PAIRS is `u v  wo.x wo.y wo.z  wi.x wi.y wi.z`, directions in the frame of the first shape's shading
 // normal. Each line of the answer is `r g b pdf`: f |cos(wi)| of all smooth lobes and the density of sampling wi.
-#include "io/load.h"
 #include "material/bsdf.h"
+#include "io/load.h"
 
 #include <stdio.h>
 

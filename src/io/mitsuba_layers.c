@@ -173,6 +173,9 @@ static void read_mapped(Mitsuba *m, SheenXml *e, SheenMaterialKind kind, SheenMa
         out->kind = kind;
         out->map = map;
         out->map_scale = scale;
+        // Since version 3; before, there was nothing of the kind.
+        out->turn_normals = sheen_mi_bool(m, e, "flip_invalid_normals", m->version >= 3);
+        out->shadow_normals = sheen_mi_bool(m, e, "use_shadowing_function", m->version >= 3);
         read_nested(m, e, out);
     } else if (!m->status) { // as if it were not there
         SheenXml *inside[1];

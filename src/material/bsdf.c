@@ -265,21 +265,6 @@ Rgb sheen_bsdf_albedo(const Bsdf *bsdf, Vec3 wo_l)
 
 // ---- for caches -------------------------------------------------------------------------------------------------
 
-// The z axis inside all wrappers, as it is outside, on the side of wo.
-static Vec3 normal_of(const Bsdf *bsdf, const BsdfLobe *lobe, Vec3 wo)
-{
-    Vec3 n = v3(0.0f, 0.0f, 1.0f);
-    bool flip = false;
-    for (uint32_t i = lobe->wrap; i != 0; i = bsdf->wraps[i - 1].outer) {
-        const BsdfWrap *wrap = &bsdf->wraps[i - 1];
-        if (wrap->kind == SHEEN_WRAP_FRAME) n = frame_to_world(&wrap->frame, n);
-        // A flip outside a frame mirrors what the frame holds.
-        flip = wrap->kind == SHEEN_WRAP_BACK || (wrap->kind == SHEEN_WRAP_TWO_SIDED && wo.z < 0.0f);
-        if (flip) n.z = -n.z;
-    }
-    return n.z * wo.z < 0.0f ? v3_neg(n) : n;
-}
-
 Rgb sheen_bsdf_diffuse(const Bsdf *bsdf, Vec3 wo_l, Vec3 *n_l)
 {
     Rgb sum = rgb_gray(0.0f);
@@ -291,8 +276,9 @@ Rgb sheen_bsdf_diffuse(const Bsdf *bsdf, Vec3 wo_l, Vec3 *n_l)
         Rgb albedo = albedo_of(bsdf, lobe, wo_l);
         sum = rgb_add(sum, albedo);
         if (n_l && rgb_max(albedo) > heaviest) {
+            BsdfWay way;
             heaviest = rgb_max(albedo);
-            *n_l = normal_of(bsdf, lobe, wo_l);
+            if (sheen_bsdf_way(bsdf, lobe, wo_l, &way)) *n_l = sheen_bsdf_way_normal(&way);
         }
     }
     return at_most_one(sum);

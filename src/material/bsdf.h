@@ -51,7 +51,7 @@ typedef struct BsdfWrap {
     BsdfWrapKind kind;
     uint32_t outer;                // the wrapper around this one, counted from 1; 0 for none
     Frame frame;                   // in the frame outside
-    const SheenMaterial *material; // the coating
+    const SheenMaterial *material; // the coating, or the map
     float alpha;                   // of the coating
 } BsdfWrap;
 

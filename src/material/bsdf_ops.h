@@ -106,4 +106,7 @@ bool sheen_bsdf_way_in(const BsdfWay *way, Vec3 *wi, Rgb *factor, float *density
 /** Takes a sample of the lobe to the surface: direction, weight and density. @return false when it does not get out */
 bool sheen_bsdf_way_out(const BsdfWay *way, BsdfSample *sample);
 
+/** @return the lobe's z axis as it is at the surface. */
+Vec3 sheen_bsdf_way_normal(const BsdfWay *way);
+
 #endif

@@ -79,9 +79,9 @@ static Frame aligned_frame(Vec3 n, Vec3 dpdu)
     return (Frame){t, v3_cross(n, t), n};
 }
 
-static void turn_to(Place *p, Inside *in, const Frame *to)
+static void turn_to(Place *p, Inside *in, const Frame *to, const SheenMaterial *map)
 {
-    BsdfWrap *wrap = add_wrap(p, in, SHEEN_WRAP_FRAME, NULL);
+    BsdfWrap *wrap = add_wrap(p, in, SHEEN_WRAP_FRAME, map);
     const Frame *from = &in->frame;
     wrap->frame = (Frame){frame_to_local(from, to->t), frame_to_local(from, to->b), frame_to_local(from, to->n)};
     in->frame = *to;
@@ -118,7 +118,7 @@ static void perturb(Place *p, Inside *in, const SheenMaterial *m)
         n = mapped_normal(p, m, &aligned);
     }
     Frame to = aligned_frame(n, dpdu);
-    turn_to(p, in, &to);
+    turn_to(p, in, &to, m);
 }
 
 static void align(Place *p, Inside *in)
@@ -126,7 +126,7 @@ static void align(Place *p, Inside *in)
     Vec3 dpdu, dpdv;
     sheen_surface_tangents(p->scene, p->s, &dpdu, &dpdv);
     Frame to = aligned_frame(in->frame.n, dpdu);
-    turn_to(p, in, &to);
+    turn_to(p, in, &to, NULL);
 }
 
 // ---- lobes ------------------------------------------------------------------------------------------------------

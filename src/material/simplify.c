@@ -56,6 +56,7 @@ void sheen_bsdf_simplify(Bsdf *bsdf)
         BsdfWrap *wrap = &bsdf->wraps[i - 1];
         if (wrap->kind != SHEEN_WRAP_FRAME && wrap->kind != SHEEN_WRAP_COAT) continue;
         wrap->kind = SHEEN_WRAP_FRAME;
+        wrap->material = NULL;
         wrap->frame = (Frame){v3(1, 0, 0), v3(0, 1, 0), v3(0, 0, 1)};
     }
     bsdf->lobes[0] = s;

@@ -26,6 +26,32 @@ static Rgb coat_transmittance(const BsdfWrap *wrap, Vec3 w, Vec3 w_in)
     return rgb(t * expf(-m->absorption.r * way), t * expf(-m->absorption.g * way), t * expf(-m->absorption.b * way));
 }
 
+// Whether a mapped normal faces away from wo, so that the normal on the other side of the surface's takes its place:
+// the frame is turned half round z. Source: schuessler2017-normals
+static bool is_turned(const BsdfWrap *wrap, Vec3 wo)
+{
+    return wrap->material && wrap->material->turn_normals && wo.z * v3_dot(wo, wrap->frame.n) <= 0.0f;
+}
+
+static Vec3 turn(bool turned, Vec3 w)
+{
+    return turned ? v3(-w.x, -w.y, w.z) : w;
+}
+
+static float tan2(Vec3 w)
+{
+    return (w.x * w.x + w.y * w.y) / (w.z * w.z);
+}
+
+// Between the terminator of the mapped normal and that of the surface, light would end abruptly: it is shadowed as by
+// microfacets of a roughness that reaches the mapped normal. Source: conty2019-terminator
+static float terminator(const BsdfWrap *wrap, Vec3 wi)
+{
+    if (wrap->kind != SHEEN_WRAP_FRAME || !wrap->material || !wrap->material->shadow_normals) return 1.0f;
+    float alpha2 = minf(0.125f * tan2(wrap->frame.n), 1.0f), f = 2.0f / (1.0f + sqrtf(1.0f + alpha2 * tan2(wi)));
+    return f > 0.0f ? f : 0.0f;
+}
+
 // A direction from outside a wrapper to inside it. @param wo  outside it: which side is seen
 static bool enter(const BsdfWrap *wrap, Vec3 wo, Vec3 *w, Rgb *factor, float *density)
 {
@@ -40,7 +66,7 @@ static bool enter(const BsdfWrap *wrap, Vec3 wo, Vec3 *w, Rgb *factor, float *de
         w->z = -w->z;
         return wo.z < 0.0f;
     case SHEEN_WRAP_FRAME:
-        *w = frame_to_local(&wrap->frame, outside);
+        *w = frame_to_local(&wrap->frame, turn(is_turned(wrap, wo), outside));
         return outside.z * w->z > 0.0f; // else light would come through the surface
     case SHEEN_WRAP_COAT:
         break;
@@ -65,7 +91,7 @@ static bool leave(const BsdfWrap *wrap, Vec3 wo, Vec3 *w, Rgb *factor, float *de
         w->z = -w->z;
         return true;
     case SHEEN_WRAP_FRAME:
-        *w = frame_to_world(&wrap->frame, inside);
+        *w = turn(is_turned(wrap, wo), frame_to_world(&wrap->frame, inside));
         return inside.z * w->z > 0.0f;
     case SHEEN_WRAP_COAT:
         break;
@@ -98,8 +124,10 @@ bool sheen_bsdf_way_in(const BsdfWay *way, Vec3 *wi, Rgb *factor, float *density
 {
     *factor = way->factor;
     *density = 1.0f;
-    for (int i = 0; i < way->n; ++i)
+    for (int i = 0; i < way->n; ++i) {
+        *factor = rgb_scale(*factor, terminator(way->wraps[i], *wi));
         if (!enter(way->wraps[i], way->wo[i], wi, factor, density)) return false;
+    }
     return true;
 }
 
@@ -107,9 +135,23 @@ bool sheen_bsdf_way_out(const BsdfWay *way, BsdfSample *sample)
 {
     Rgb factor = way->factor;
     float density = 1.0f;
-    for (int i = way->n - 1; i >= 0; --i)
+    for (int i = way->n - 1; i >= 0; --i) {
         if (!leave(way->wraps[i], way->wo[i], &sample->wi_l, &factor, &density)) return false;
+        factor = rgb_scale(factor, terminator(way->wraps[i], sample->wi_l));
+    }
     if (way->n > 0) sample->weight = rgb_mul(sample->weight, factor);
     if (!sample->delta) sample->pdf *= density;
     return true;
+}
+
+Vec3 sheen_bsdf_way_normal(const BsdfWay *way)
+{
+    Vec3 n = v3(0.0f, 0.0f, 1.0f);
+    for (int i = way->n - 1; i >= 0; --i) {
+        const BsdfWrap *wrap = way->wraps[i];
+        bool back = wrap->kind == SHEEN_WRAP_BACK || (wrap->kind == SHEEN_WRAP_TWO_SIDED && way->wo[i].z < 0.0f);
+        if (wrap->kind == SHEEN_WRAP_FRAME) n = turn(is_turned(wrap, way->wo[i]), frame_to_world(&wrap->frame, n));
+        if (back) n.z = -n.z;
+    }
+    return n;
 }

@@ -15,8 +15,7 @@ static float share(const Microfacet *s, float eta, float cosine, bool reflected)
         Vec3 m = sheen_microfacet_sample(s, v, u), out = v3_reflect(v, m);
         float cos_t, c = v3_dot(v, m), f = sheen_fresnel_dielectric(c, eta, &cos_t);
         if (!reflected) out = v3_mad(v3_scale(v, -1.0f / eta), c / eta + cos_t, m);
-        if ((out.z > 0.0f) == reflected)
-            sum += (double)((reflected ? f : 1.0f - f) * sheen_microfacet_g1(s, out, m));
+        if ((out.z > 0.0f) == reflected) sum += (double)((reflected ? f : 1.0f - f) * sheen_microfacet_g1(s, out, m));
     }
     return clampf((float)(sum / (SIDE * SIDE)), 0.0f, 1.0f);
 }

@@ -117,6 +117,8 @@ typedef struct SheenMaterial {
     SheenTexture weight;                 // blend, mask; the luminance counts
     SheenTexture map;                    // bump: height, its luminance; normal: the normals
     float map_scale;                     // bump: factor on the height
+    bool turn_normals;                   // maps: a normal that faces away from the viewer is turned about the surface's
+    bool shadow_normals;                 // maps: light along the surface fades out, see conty2019-terminator
     uint32_t nested[2];                  // index of materials that were added before
     const SheenPrincipled *principled;   // in the builder's arena; NULL for other kinds
     const char *name;                    // id in the scene file or plugin name; never NULL
