@@ -2,6 +2,7 @@
 #include "material/bsdf.h"
 
 #include "material/bsdf_ops.h"
+#include "math/warp.h"
 
 static bool counts(const BsdfLobe *lobe, unsigned classes)
 {
@@ -201,14 +202,13 @@ int sheen_bsdf_delta_lobes(const Bsdf *bsdf, Vec3 wo_l, BsdfSample out[SHEEN_BSD
 
 // ---- albedos ----------------------------------------------------------------------------------------------------
 
-enum { ALBEDO_SIDE = 8 };
+enum { ALBEDO_SAMPLES = 256 };
 
-// The i-th of a fixed set of samples: stratified places, choices spread over them.
-static void albedo_numbers(int i, float *choice, Vec2 *u)
+// The i-th of a fixed set of samples: even places, choices spread over them.
+static void albedo_numbers(uint32_t i, float *choice, Vec2 *u)
 {
-    int x = i / ALBEDO_SIDE, y = i % ALBEDO_SIDE;
-    *u = v2(((float)x + 0.5f) / ALBEDO_SIDE, ((float)y + 0.5f) / ALBEDO_SIDE);
-    *choice = ((float)((3 * x + 5 * y) % ALBEDO_SIDE) + 0.5f) / ALBEDO_SIDE;
+    *u = warp_hammersley(i, ALBEDO_SAMPLES);
+    *choice = fmodf((float)i * 0.618034f, 1.0f);
 }
 
 static Rgb at_most_one(Rgb c)
@@ -218,16 +218,15 @@ static Rgb at_most_one(Rgb c)
 
 Rgb sheen_bsdf_albedo_by_samples(const BsdfLobe *b, Vec3 wo, float ior)
 {
-    const int n = ALBEDO_SIDE * ALBEDO_SIDE;
     Rgb sum = rgb_gray(0.0f);
-    for (int i = 0; i < n; ++i) {
+    for (uint32_t i = 0; i < ALBEDO_SAMPLES; ++i) {
         float choice;
         Vec2 u;
         BsdfSample s = {.pdf = 0.0f};
         albedo_numbers(i, &choice, &u);
         if (!b->ops->sample(b, wo, choice, u, &s)) continue;
         float spread = s.wi_l.z * wo.z < 0.0f ? sqrf(wo.z > 0.0f ? ior : 1.0f / ior) : 1.0f;
-        sum = rgb_mad(sum, spread / (float)n, s.weight);
+        sum = rgb_mad(sum, spread / (float)ALBEDO_SAMPLES, s.weight);
     }
     return at_most_one(sum);
 }
@@ -244,14 +243,13 @@ static Rgb albedo_of(const Bsdf *bsdf, const BsdfLobe *lobe, Vec3 wo)
     BsdfWay way;
     if (!sheen_bsdf_way(bsdf, lobe, wo, &way)) return rgb_gray(0.0f);
     if (!is_coated(&way)) return rgb_scale(lobe->ops->albedo(lobe, bsdf_way_wo(&way)), lobe->weight);
-    const int n = ALBEDO_SIDE * ALBEDO_SIDE;
     Rgb sum = rgb_gray(0.0f);
-    for (int i = 0; i < n; ++i) {
+    for (uint32_t i = 0; i < ALBEDO_SAMPLES; ++i) {
         float choice;
         Vec2 u;
         BsdfSample s;
         albedo_numbers(i, &choice, &u);
-        if (sample_lobe(bsdf, lobe, wo, choice, u, &s)) sum = rgb_mad(sum, 1.0f / (float)n, s.weight);
+        if (sample_lobe(bsdf, lobe, wo, choice, u, &s)) sum = rgb_mad(sum, 1.0f / (float)ALBEDO_SAMPLES, s.weight);
     }
     return sum;
 }

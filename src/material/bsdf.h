@@ -119,7 +119,7 @@ int sheen_bsdf_delta_lobes(const Bsdf *bsdf, Vec3 wo_l, BsdfSample out[SHEEN_BSD
 /**
  * @return the share of the energy that wo's direction scatters into all others, transmission included, each channel in
  *         [0, 1]; without the factor 1/eta^2 that refraction puts on radiance. Closed forms where there are, else a
- *         fixed quadrature, good to about 1 %: for layers and choices, not for light.
+ *         fixed quadrature, good to about 2 %: for layers and choices, not for light.
  */
 Rgb sheen_bsdf_albedo(const Bsdf *bsdf, Vec3 wo_l);
 

@@ -5,6 +5,20 @@
 
 #include "math/vec.h"
 
+#include <stdint.h>
+
+/** Point i of n, a power of 2, that fill the unit square evenly, each alone in its column and row: for quadratures. */
+static inline Vec2 warp_hammersley(uint32_t i, uint32_t n)
+{
+    uint32_t bits = i; // turned round: the radical inverse in base 2
+    bits = (bits & 0x55555555u) << 1 | (bits >> 1 & 0x55555555u);
+    bits = (bits & 0x33333333u) << 2 | (bits >> 2 & 0x33333333u);
+    bits = (bits & 0x0f0f0f0fu) << 4 | (bits >> 4 & 0x0f0f0f0fu);
+    bits = (bits & 0x00ff00ffu) << 8 | (bits >> 8 & 0x00ff00ffu);
+    bits = bits << 16 | bits >> 16;
+    return v2(((float)i + 0.5f) / (float)n, (float)(bits >> 8) * 0x1p-24f + 0.5f / (float)n);
+}
+
 /** Concentric map to the unit disk, uniform: density 1/pi. Source: shirley1997-concentric. */
 static inline Vec2 warp_disk(Vec2 u)
 {

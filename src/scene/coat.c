@@ -2,22 +2,22 @@
 #include "scene/coat.h"
 
 #include "math/fresnel.h"
+#include "math/warp.h"
 
 // Share of the light from v that a single scattering sends back (`reflected`) or through: the mean over visible normals
 // of Fresnel's share times that which is not shadowed on the way out. eta: index beyond over index on the side of v.
 static float share(const Microfacet *s, float eta, float cosine, bool reflected)
 {
-    enum { SIDE = 24 };
+    enum { SAMPLES = 1024 };
     Vec3 v = v3(safe_sqrtf(1.0f - cosine * cosine), 0.0f, cosine);
     double sum = 0.0;
-    for (int i = 0; i < SIDE * SIDE; ++i) {
-        Vec2 u = v2(((float)(i / SIDE) + 0.5f) / SIDE, ((float)(i % SIDE) + 0.5f) / SIDE);
-        Vec3 m = sheen_microfacet_sample(s, v, u), out = v3_reflect(v, m);
+    for (uint32_t i = 0; i < SAMPLES; ++i) {
+        Vec3 m = sheen_microfacet_sample(s, v, warp_hammersley(i, SAMPLES)), out = v3_reflect(v, m);
         float cos_t, c = v3_dot(v, m), f = sheen_fresnel_dielectric(c, eta, &cos_t);
         if (!reflected) out = v3_mad(v3_scale(v, -1.0f / eta), c / eta + cos_t, m);
         if ((out.z > 0.0f) == reflected) sum += (double)((reflected ? f : 1.0f - f) * sheen_microfacet_g1(s, out, m));
     }
-    return clampf((float)(sum / (SIDE * SIDE)), 0.0f, 1.0f);
+    return clampf((float)(sum / SAMPLES), 0.0f, 1.0f);
 }
 
 static void fill_row(SheenCoat *c, uint32_t row, float alpha)

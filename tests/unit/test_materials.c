@@ -1,0 +1,405 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every material of Mitsuba scenes: samples against densities, weights, energy, reciprocity, and its parts apart.
+#include "io/mitsuba.h"
+#include "material/bsdf.h"
+#include "math/warp.h"
+#include "unit/chi_squared.h"
+#include "unit/light_scene.h"
+
+#include <stdio.h>
+
+#define GOLD "<string name='material' value='Au'/>"
+#define GGX "<string name='distribution' value='ggx'/>"
+#define F(name, value) "<float name='" #name "' value='" #value "'/>"
+#define RGB(name, value) "<rgb name='" #name "' value='" #value "'/>"
+#define BSDF(type, inside) "<bsdf type='" type "'>" inside "</bsdf>"
+#define DIFFUSE BSDF("diffuse", RGB(reflectance, 0.2 0.5 0.8))
+#define BASE RGB(base_color, 0.8 0.4 0.2)
+
+typedef struct Case {
+    const char *name, *xml;
+    float ior;       // where light goes through, what its radiance is scaled by; else 1
+    bool conserving; // energy is not made
+    bool reciprocal;
+} Case;
+
+static const Case cases[] = {
+    {"diffuse", DIFFUSE, 1, true, true},
+    {"twosided", BSDF("twosided", DIFFUSE), 1, true, true},
+    {"sides", BSDF("twosided", DIFFUSE BSDF("roughconductor", GOLD F(alpha, 0.4))), 1, true, true},
+    {"difftrans", BSDF("difftrans", RGB(transmittance, 0.3 0.6 0.9)), 1, true, true},
+    {"beckmann", BSDF("roughconductor", GOLD F(alpha, 0.15)), 1, true, true},
+    {"ggx", BSDF("roughconductor", GOLD GGX F(alpha, 0.15)), 1, true, true},
+    {"ggx, smooth", BSDF("roughconductor", GOLD GGX F(alpha, 0.08)), 1, true, true},
+    {"ggx, rough", BSDF("roughconductor", GOLD GGX F(alpha, 0.9)), 1, true, true},
+    {"beckmann, rough", BSDF("roughconductor", GOLD F(alpha, 0.9)), 1, true, true},
+    {"ggx u v", BSDF("roughconductor", GOLD GGX F(alpha_u, 0.1) F(alpha_v, 0.6)), 1, true, true},
+    {"beckmann u v", BSDF("roughconductor", GOLD F(alpha_u, 0.6) F(alpha_v, 0.15)), 1, true, true},
+    {"glass, ggx", BSDF("roughdielectric", GGX F(alpha, 0.3) F(int_ior, 1.5) F(ext_ior, 1)), 1.5f, true, true},
+    {"glass, beckmann", BSDF("roughdielectric", F(alpha, 0.2) F(int_ior, 1.5) F(ext_ior, 1)), 1.5f, true, true},
+    {"glass, thinner inside", BSDF("roughdielectric", GGX F(alpha, 0.2) F(int_ior, 1) F(ext_ior, 1.5)), 1 / 1.5f, true,
+     true},
+    {"plastic", BSDF("plastic", RGB(diffuse_reflectance, 0.9 0.5 0.1)), 1, true, true},
+    {"roughplastic", BSDF("roughplastic", F(alpha, 0.2) RGB(diffuse_reflectance, 0.9 0.5 0.1)), 1, true, true},
+    {"phong", BSDF("phong", F(exponent, 40) RGB(diffuse_reflectance, 0.5) RGB(specular_reflectance, 0.4)), 1, true,
+     true},
+    {"ward", BSDF("ward", F(alpha_u, 0.3) F(alpha_v, 0.15)), 1, true, true},
+    {"ward, 1992", BSDF("ward", F(alpha, 0.2) "<string name='variant' value='ward'/>"), 1, true, true},
+    {"blend", BSDF("blendbsdf", F(weight, 0.3) DIFFUSE BSDF("plastic", "")), 1, true, true},
+    {"mixture",
+     BSDF("mixturebsdf",
+          "<string name='weights' value='0.2 0.5 0.2'/>" DIFFUSE BSDF("phong", "") BSDF("roughconductor", GOLD)),
+     1, true, true},
+    {"mask", BSDF("mask", F(opacity, 0.4) BSDF("roughplastic", F(alpha, 0.3))), 1, true, true},
+    {"coating", BSDF("coating", RGB(sigma_a, 0.1 0.2 0.3) BSDF("roughconductor", GOLD F(alpha, 0.3))), 1, true, true},
+    {"coated, two sides", BSDF("twosided", BSDF("coating", BSDF("diffuse", ""))), 1, true, true},
+    {"roughcoating", BSDF("roughcoating", F(alpha, 0.2) BSDF("roughconductor", F(alpha, 0.3))), 1, true, true},
+    {"principled", BSDF("principled", BASE F(clearcoat, 0.8) F(metallic, 0.3) F(spec_tint, 0.5)), 1, true, true},
+    {"cloth", BSDF("principled", BASE F(sheen, 0.7) F(sheen_tint, 0.5) F(flatness, 0.4)), 1, false, true},
+    {"brushed", BSDF("principled", BASE F(metallic, 1) F(anisotropic, 0.9) F(roughness, 0.5)), 1, true, true},
+    {"frosted", BSDF("principled", BASE F(spec_trans, 0.7) F(eta, 1.5) F(roughness, 0.5)), 1.5f, true, true},
+};
+enum { N_CASES = sizeof cases / sizeof *cases };
+
+static void log_line(void *user, SheenLogLevel level, const char *text)
+{
+    (void)user;
+    bool expected = strstr(text, "no light") || strstr(text, "no camera");
+    if (level != SHEEN_LOG_INFO && !expected) fail_msg("%s", text);
+}
+
+/** A square of the material; free with sheen_scene_destroy. */
+static SheenScene *scene_of(const char *bsdf)
+{
+    char text[4096];
+    const SheenLog log = {log_line, NULL};
+    SheenScene *scene = NULL;
+    int n = snprintf(text, sizeof text, "<scene version='3.0.0'><shape type='rectangle'>%s</shape></scene>", bsdf);
+    assert_int_equal(sheen_mitsuba_parse(text, (size_t)n, "test", false, &log, &scene), SHEEN_OK);
+    return scene;
+}
+
+static Bsdf bsdf_at(const SheenScene *scene, Vec2 uv)
+{
+    SurfacePoint point = {.ns = {0, 0, 1}, .ng = {0, 0, 1}, .uv = uv, .instance = SHEEN_NONE};
+    return sheen_bsdf_at(scene, &point);
+}
+
+static Vec3 direction(float theta, float phi)
+{
+    return v3(sinf(theta) * cosf(phi), sinf(theta) * sinf(phi), cosf(theta));
+}
+
+// From near the normal to grazing, from both sides.
+static const Vec3 views[] = {{0.05f, 0.1f, 0.9937303f},
+                             {0.5f, -0.6f, 0.6244998f},
+                             {-0.9f, 0.4f, 0.1732051f},
+                             {0.3f, 0.4f, -0.8660254f},
+                             {0.7f, -0.6f, -0.3872983f}};
+enum { N_VIEWS = sizeof views / sizeof *views };
+
+// ---- a grid of directions ---------------------------------------------------------------------------------------
+
+// Even steps of theta, finer than the narrowest lobe, and of phi; each bin is a few cells of the midpoint rule.
+enum { BINS_THETA = 36, BINS_PHI = 24, SUB_THETA = 8, SUB_PHI = 10, BINS = BINS_THETA * BINS_PHI };
+
+static int bin_of(Vec3 w)
+{
+    int t = (int)(acosf(clampf(w.z, -1, 1)) / SHEEN_PI * BINS_THETA);
+    int p = (int)((atan2f(w.y, w.x) / (2 * SHEEN_PI) + 0.5f) * BINS_PHI);
+    return (t < BINS_THETA ? t : BINS_THETA - 1) * BINS_PHI + (p < BINS_PHI ? p : BINS_PHI - 1);
+}
+
+typedef struct Integrals {
+    double pdf[BINS]; // over each bin
+    double pdf_sum;
+    double light,
+        diffuse; // green of f |cos|, without the factor that refraction puts on radiance; of the class diffuse
+} Integrals;
+
+static void integrate(const Bsdf *b, Vec3 wo, float ior, Integrals *out)
+{
+    memset(out, 0, sizeof *out);
+    const bool has_diffuse = sheen_bsdf_classes(b) & SHEEN_BSDF_DIFFUSE;
+    const int n_theta = BINS_THETA * SUB_THETA, n_phi = BINS_PHI * SUB_PHI;
+    for (int i = 0; i < n_theta; ++i)
+        for (int k = 0; k < n_phi; ++k) {
+            float theta = ((float)i + 0.5f) * SHEEN_PI / (float)n_theta;
+            float phi = (((float)k + 0.5f) / (float)n_phi - 0.5f) * 2 * SHEEN_PI;
+            Vec3 wi = direction(theta, phi);
+            double cell = (double)(sinf(theta) * SHEEN_PI / (float)n_theta * 2 * SHEEN_PI / (float)n_phi);
+            double spread = wi.z * wo.z < 0 ? (double)sqrf(wo.z > 0 ? ior : 1 / ior) : 1;
+            double pdf = (double)sheen_bsdf_pdf(b, wo, wi) * cell;
+            out->pdf[i / SUB_THETA * BINS_PHI + k / SUB_PHI] += pdf;
+            out->pdf_sum += pdf;
+            out->light += (double)sheen_bsdf_eval(b, wo, wi).g * spread * cell;
+            if (has_diffuse) out->diffuse += (double)sheen_bsdf_eval_of(b, SHEEN_BSDF_DIFFUSE, wo, wi).g * cell;
+        }
+}
+
+static double delta_share(const Bsdf *b, Vec3 wo)
+{
+    BsdfSample s[SHEEN_BSDF_MAX_DELTA];
+    double sum = 0;
+    for (int n = sheen_bsdf_delta_lobes(b, wo, s), i = 0; i < n; ++i) sum += (double)s[i].weight.g;
+    return sum;
+}
+
+static void assert_near(const char *what, const char *name, Vec3 wo, double got, double want, double tolerance)
+{
+    if (!(fabs(got - want) <= tolerance))
+        fail_msg("%s: %s from cosine %g: %.6g, want %.6g +- %.2g", name, what, (double)wo.z, got, want, tolerance);
+}
+
+// ---- samples ----------------------------------------------------------------------------------------------------
+
+static void check_samples(const Case *c, const Bsdf *b, Vec3 wo)
+{
+    enum { N = 40000 };
+    static double observed[BINS + 1], expected[BINS + 1];
+    static Integrals in;
+    memset(observed, 0, sizeof observed);
+    integrate(b, wo, c->ior, &in);
+    Random r = {17, 0};
+    Moments light = {0};
+    for (int i = 0; i < N; ++i) {
+        BsdfSample s;
+        double green = 0;
+        // A Beckmann lobe's sampling looks its numbers up by inversion: they are drawn stratified, as renderers do.
+        Vec2 u = v2(((float)(i % 200) + random_1d(&r)) / 200, ((float)(i / 200) + random_1d(&r)) / 200);
+        if (sheen_bsdf_sample(b, wo, random_1d(&r), u, &s)) {
+            double spread = s.transmit ? (double)sqrf(wo.z > 0 ? c->ior : 1 / c->ior) : 1;
+            green = (double)s.weight.g * spread;
+            assert_true(s.transmit == (s.wi_l.z * wo.z < 0));
+            assert_near("length", c->name, wo, (double)v3_length(s.wi_l), 1, 1e-5);
+            if (s.delta) {
+                observed[BINS] += 1;
+            } else {
+                observed[bin_of(s.wi_l)] += 1;
+                // Rounding of directions, enlarged by the slope of a narrow lobe.
+                double pdf = (double)sheen_bsdf_pdf(b, wo, s.wi_l), f = (double)sheen_bsdf_eval(b, wo, s.wi_l).g;
+                assert_near("pdf", c->name, wo, (double)s.pdf, pdf, 2e-3 * pdf);
+                assert_near("weight", c->name, wo, (double)(s.weight.g * s.pdf), f, 2e-3 * f + 1e-6);
+            }
+        } else {
+            observed[BINS] += 1;
+        }
+        moments_add(&light, green);
+    }
+    for (int i = 0; i < BINS; ++i) expected[i] = in.pdf[i] * N;
+    expected[BINS] = fmax(1 - in.pdf_sum, 0) * N; // absorbed, or delta
+    double deviation = chi_squared_deviation(BINS + 1, observed, expected);
+    if (!(deviation < CHI_SQUARED_LIMIT)) fail_msg("%s: chi^2 from cosine %g: %g", c->name, (double)wo.z, deviation);
+    double whole = in.light + delta_share(b, wo) * (c->ior == 1 ? 1 : 0);
+    // Five standard errors, and the grid's own error at the narrowest lobes.
+    assert_near("light", c->name, wo, moments_mean(&light), whole, 5 * moments_error(&light) + 2e-3 * whole);
+    assert_near("albedo", c->name, wo, (double)sheen_bsdf_albedo(b, wo).g, fmin(whole, 1), 0.02);
+    assert_near("diffuse", c->name, wo, (double)sheen_bsdf_diffuse(b, wo, NULL).g, in.diffuse, 0.02);
+    if (c->conserving) assert_true(whole <= 1.002);
+    assert_true(in.pdf_sum <= 1.005);
+}
+
+static void test_samples_follow_the_density(void **state)
+{
+    (void)state;
+    for (int i = 0; i < N_CASES; ++i) {
+        SheenScene *scene = scene_of(cases[i].xml);
+        Bsdf b = bsdf_at(scene, v2(0.3f, 0.6f));
+        for (int k = 0; k < N_VIEWS; ++k) check_samples(&cases[i], &b, views[k]);
+        sheen_scene_destroy(&scene);
+    }
+}
+
+// ---- pairs of directions ----------------------------------------------------------------------------------------
+
+static void test_reciprocity(void **state)
+{
+    (void)state;
+    for (int i = 0; i < N_CASES; ++i) {
+        if (!cases[i].reciprocal) continue;
+        SheenScene *scene = scene_of(cases[i].xml);
+        Bsdf b = bsdf_at(scene, v2(0.3f, 0.6f));
+        Random r = {3, 0};
+        for (int k = 0; k < 2000; ++k) {
+            Vec3 x = warp_sphere(random_2d(&r)), y = warp_sphere(random_2d(&r));
+            // Radiance over the squared index is what is scattered symmetrically.
+            float at_x = x.z > 0 ? 1 : cases[i].ior, at_y = y.z > 0 ? 1 : cases[i].ior;
+            double xy = (double)(sheen_bsdf_eval(&b, x, y).g * fabsf(x.z) * sqrf(at_y));
+            double yx = (double)(sheen_bsdf_eval(&b, y, x).g * fabsf(y.z) * sqrf(at_x));
+            // Of a side that is seen from there only.
+            if (strcmp(cases[i].name, "sides") == 0 && x.z * y.z < 0) continue;
+            assert_near("reciprocity", cases[i].name, x, xy, yx, 2e-4 * (xy + yx) + 1e-6);
+        }
+        sheen_scene_destroy(&scene);
+    }
+}
+
+static void test_parts_make_the_whole(void **state)
+{
+    (void)state;
+    for (int i = 0; i < N_CASES; ++i) {
+        SheenScene *scene = scene_of(cases[i].xml);
+        Bsdf b = bsdf_at(scene, v2(0.3f, 0.6f));
+        Random r = {5, 0};
+        for (int k = 0; k < 500; ++k) {
+            Vec3 wo = warp_sphere(random_2d(&r)), wi = warp_sphere(random_2d(&r));
+            float d = sheen_bsdf_eval_of(&b, SHEEN_BSDF_DIFFUSE, wo, wi).g;
+            float g = sheen_bsdf_eval_of(&b, SHEEN_BSDF_GLOSSY, wo, wi).g, all = sheen_bsdf_eval(&b, wo, wi).g;
+            assert_near("sum of parts", cases[i].name, wo, (double)(d + g), (double)all, 1e-5 * (double)all);
+            assert_true(rgb_is_black(sheen_bsdf_eval_of(&b, SHEEN_BSDF_DELTA, wo, wi)));
+            BsdfSample s;
+            if (sheen_bsdf_sample_of(&b, SHEEN_BSDF_GLOSSY, wo, random_1d(&r), random_2d(&r), &s)) {
+                double f = (double)sheen_bsdf_eval_of(&b, SHEEN_BSDF_GLOSSY, wo, s.wi_l).g;
+                double pdf = (double)sheen_bsdf_pdf_of(&b, SHEEN_BSDF_GLOSSY, wo, s.wi_l);
+                assert_true(!s.delta && pdf > 0);
+                assert_near("glossy weight", cases[i].name, wo, (double)s.weight.g * pdf, f, 2e-3 * f + 1e-6);
+            }
+            if (sheen_bsdf_sample_of(&b, SHEEN_BSDF_DELTA, wo, random_1d(&r), random_2d(&r), &s)) assert_true(s.delta);
+        }
+        sheen_scene_destroy(&scene);
+    }
+}
+
+// ---- plastics ---------------------------------------------------------------------------------------------------
+
+// On a white base nothing is lost: what the interface keeps inside comes out later.
+static void test_white_plastic_is_white(void **state)
+{
+    (void)state;
+    SheenScene *scene = scene_of(BSDF("plastic", RGB(diffuse_reflectance, 1) F(int_ior, 1.7)));
+    Bsdf b = bsdf_at(scene, v2(0, 0));
+    static Integrals in;
+    for (int k = 0; k < 3; ++k) {
+        integrate(&b, views[k], 1, &in);
+        assert_near("white", "plastic", views[k], in.light + delta_share(&b, views[k]), 1, 2e-3);
+        assert_near("albedo", "plastic", views[k], (double)sheen_bsdf_albedo(&b, views[k]).g, 1, 1e-4);
+    }
+    sheen_scene_destroy(&scene);
+}
+
+static void test_rough_plastic_becomes_smooth(void **state)
+{
+    (void)state;
+    SheenScene *scene[2] = {scene_of(BSDF("plastic", RGB(diffuse_reflectance, 0.9))),
+                            scene_of(BSDF("roughplastic", F(alpha, 0.003) RGB(diffuse_reflectance, 0.9)))};
+    Bsdf smooth = bsdf_at(scene[0], v2(0, 0)), rough = bsdf_at(scene[1], v2(0, 0));
+    Random r = {9, 0};
+    for (int k = 0; k < 200; ++k) {
+        Vec3 wo = warp_cosine_hemisphere(random_2d(&r)), wi = warp_cosine_hemisphere(random_2d(&r));
+        if (wo.z < 0.05f || wi.z < 0.05f) continue; // linear interpolation of a steep table
+        double a = (double)sheen_bsdf_eval_of(&smooth, SHEEN_BSDF_DIFFUSE, wo, wi).g;
+        double c = (double)sheen_bsdf_eval_of(&rough, SHEEN_BSDF_DIFFUSE, wo, wi).g;
+        assert_near("base", "roughplastic", wo, c, a, 0.006 * a);
+    }
+    sheen_scene_destroy(&scene[0]);
+    sheen_scene_destroy(&scene[1]);
+}
+
+// ---- what caches ask for ----------------------------------------------------------------------------------------
+
+static void test_roughening(void **state)
+{
+    (void)state;
+    static const char *const smooth[] = {BSDF("conductor", GOLD),
+                                         BSDF("dielectric", F(int_ior, 1.5) F(ext_ior, 1)),
+                                         BSDF("plastic", ""),
+                                         BSDF("coating", BSDF("conductor", GOLD)),
+                                         BSDF("roughconductor", GOLD F(alpha, 0.01)),
+                                         BSDF("phong", F(exponent, 5000)),
+                                         BSDF("principled", F(metallic, 1) F(roughness, 0.05) F(clearcoat, 1))};
+    for (size_t i = 0; i < sizeof smooth / sizeof *smooth; ++i) {
+        SheenScene *scene = scene_of(smooth[i]);
+        Bsdf b = bsdf_at(scene, v2(0, 0));
+        Vec3 wo = views[1];
+        double before = (double)sheen_bsdf_albedo(&b, wo).g;
+        assert_true((sheen_bsdf_classes(&b) & SHEEN_BSDF_DELTA) || sheen_bsdf_roughness(&b) < 0.1f);
+        sheen_bsdf_roughen(&b, 0.1f);
+        assert_int_equal(sheen_bsdf_classes(&b) & SHEEN_BSDF_DELTA, 0);
+        assert_true(sheen_bsdf_roughness(&b) >= 0.1f);
+        // Under a coat, what leaves at steeper angles than it came is kept inside, and so lost.
+        if (!strstr(smooth[i], "coating"))
+            assert_near("roughened", smooth[i], wo, (double)sheen_bsdf_albedo(&b, wo).g, before, 0.08);
+        Random r = {2, 0};
+        double largest = 0;
+        for (int k = 0; k < 2000; ++k) {
+            BsdfSample s;
+            if (sheen_bsdf_sample(&b, wo, random_1d(&r), random_2d(&r), &s)) largest = fmax(largest, (double)s.pdf);
+        }
+        assert_true(largest > 0 && largest < 200); // D of alpha 0.1 is 32 at its peak
+        sheen_scene_destroy(&scene);
+    }
+    // A pane and a hole focus nothing.
+    SheenScene *scene = scene_of(BSDF("mask", F(opacity, 0.5) BSDF("thindielectric", "")));
+    Bsdf b = bsdf_at(scene, v2(0, 0));
+    sheen_bsdf_roughen(&b, 0.3f);
+    assert_true(sheen_bsdf_is_delta(&b));
+    assert_true(sheen_bsdf_roughness(&b) == 1);
+    sheen_scene_destroy(&scene);
+}
+
+static void test_simplest_relatives(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *xml;
+        bool delta;
+        float albedo; // green, from straight above; < 0 where it depends
+    } relatives[] = {
+        {DIFFUSE, false, 0.5f},
+        {BSDF("plastic", RGB(diffuse_reflectance, 0.3)), false, 0.3f},
+        {BSDF("roughplastic", RGB(diffuse_reflectance, 0.3)), false, 0.3f},
+        {BSDF("roughconductor", F(alpha, 0.3)), true, 1},
+        {BSDF("roughdielectric", F(alpha, 0.3)), true, 1},
+        {BSDF("mask", F(opacity, 0.8) DIFFUSE), false, 0.5f},
+        {BSDF("mask", F(opacity, 0.2) DIFFUSE), true, 1},
+        {BSDF("blendbsdf", F(weight, 0.7) BSDF("conductor", "") DIFFUSE), false, 0.5f},
+        {BSDF("coating", DIFFUSE), false, 0.5f},
+        {BSDF("phong", RGB(diffuse_reflectance, 0.25)), false, 0.25f},
+        {BSDF("principled", BASE), false, 0.4f},
+        {BSDF("principled", BASE F(metallic, 1)), true, 0.4f},
+        {BSDF("principled", BASE F(spec_trans, 1)), true, -1},
+        {BSDF("difftrans", ""), false, 0},
+    };
+    for (size_t i = 0; i < sizeof relatives / sizeof *relatives; ++i) {
+        SheenScene *scene = scene_of(relatives[i].xml);
+        Bsdf b = bsdf_at(scene, v2(0, 0));
+        sheen_bsdf_simplify(&b);
+        assert_int_equal(b.n_lobes, 1);
+        assert_int_equal(sheen_bsdf_is_delta(&b), relatives[i].delta);
+        assert_true(!relatives[i].delta || sheen_material_may_be_delta(scene, scene->shapes[0].material));
+        Rgb albedo = sheen_bsdf_albedo(&b, v3(0, 0, 1));
+        if (relatives[i].albedo >= 0)
+            assert_near("albedo", relatives[i].xml, v3(0, 0, 1), (double)albedo.g, (double)relatives[i].albedo, 1e-5);
+        sheen_scene_destroy(&scene);
+    }
+}
+
+static void test_delta_lobes_of_mixtures(void **state)
+{
+    (void)state;
+    BsdfSample s[SHEEN_BSDF_MAX_DELTA];
+    SheenScene *scene =
+        scene_of(BSDF("mask", F(opacity, 0.5) BSDF("blendbsdf", F(weight, 0.5) BSDF("conductor", "") BSDF(
+                                                                    "dielectric", F(int_ior, 1.5) F(ext_ior, 1)))));
+    Bsdf b = bsdf_at(scene, v2(0, 0));
+    assert_true(sheen_bsdf_is_delta(&b));
+    // Mirrors of metal and glass are one; refraction and the hole stand alone.
+    assert_int_equal(sheen_bsdf_delta_lobes(&b, v3(0.6f, 0, 0.8f), s), 3);
+    double mirror = 0.25 + 0.25 * 0.043894730508327484;
+    assert_near("mirror", "mixture", s[0].wi_l, (double)s[0].weight.g, mirror, 1e-5);
+    assert_near("refraction", "mixture", s[1].wi_l, (double)s[1].weight.g, 0.25 * 0.9561052918434143 / 2.25, 1e-5);
+    assert_near("hole", "mixture", s[2].wi_l, (double)s[2].weight.g, 0.5, 1e-6);
+    assert_true(!s[0].transmit && s[1].transmit && s[2].transmit && s[2].wi_l.x == -0.6f);
+    sheen_scene_destroy(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_samples_follow_the_density),   cmocka_unit_test(test_reciprocity),
+        cmocka_unit_test(test_parts_make_the_whole),         cmocka_unit_test(test_white_plastic_is_white),
+        cmocka_unit_test(test_rough_plastic_becomes_smooth), cmocka_unit_test(test_roughening),
+        cmocka_unit_test(test_simplest_relatives),           cmocka_unit_test(test_delta_lobes_of_mixtures),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
