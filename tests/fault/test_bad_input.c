@@ -173,6 +173,23 @@ static void references_that_lead_nowhere_or_in_circles(void **state)
                 "<shape type=\"cube\"><ref id=\"a\"/></shape><bsdf type=\"twosided\" id=\"a\"><ref id=\"b\"/></bsdf>\n"
                 "<bsdf type=\"mask\" id=\"b\"><ref id=\"a\"/></bsdf>",
                 SHEEN_ERR_PARSE, "scene.xml:2:41", "the material refers to itself");
+    kit_refused(k,
+                "<shape type=\"cube\"><ref id=\"a\"/></shape><bsdf type=\"blendbsdf\" id=\"a\"><bsdf "
+                "type=\"diffuse\"/>\n<bsdf type=\"bumpmap\"><texture type=\"checkerboard\"/><ref "
+                "id=\"a\"/></bsdf></bsdf>",
+                SHEEN_ERR_PARSE, "scene.xml:2:41", "the material refers to itself");
+    char chain[8192] = "<shape type=\"cube\"><ref id=\"m0\"/></shape><bsdf type=\"diffuse\" id=\"m40\"/>\n";
+    for (int i = 0; i < 40; ++i)
+        snprintf(chain + strlen(chain), sizeof chain - strlen(chain),
+                 "<bsdf type=\"mask\" id=\"m%d\"><ref id=\"m%d\"/></bsdf>\n", i, i + 1);
+    kit_refused(k, chain, SHEEN_ERR_PARSE, "scene.xml:35:1", "more than 32 materials lie inside each other");
+    kit_refused(k,
+                "<shape type=\"cube\"><bsdf type=\"mixturebsdf\">\n<string name=\"weights\" value=\"1\"/><bsdf "
+                "type=\"diffuse\"/><bsdf type=\"diffuse\"/></bsdf></shape>",
+                SHEEN_ERR_PARSE, "scene.xml:2:20", "'weights' needs one number for each of 2 materials");
+    kit_refused(
+        k, "<shape type=\"cube\"><bsdf type=\"roughplastic\">\n<float name=\"alpha\" value=\"nan\"/></bsdf></shape>",
+        SHEEN_ERR_PARSE, "scene.xml:3:1", "is not a finite number");
     kit_refused(k, "<shape type=\"cube\"><ref id=\"a\"/></shape><alias id=\"b\" as=\"a\"/><alias id=\"a\" as=\"b\"/>",
                 SHEEN_ERR_PARSE, "scene.xml:2:20", "leads to itself");
     kit_refused(k,

@@ -30,7 +30,7 @@ static const Case cases[] = {
     {"difftrans", BSDF("difftrans", RGB(transmittance, 0.3 0.6 0.9)), 1, true, true},
     {"beckmann", BSDF("roughconductor", GOLD F(alpha, 0.15)), 1, true, true},
     {"ggx", BSDF("roughconductor", GOLD GGX F(alpha, 0.15)), 1, true, true},
-    {"ggx, smooth", BSDF("roughconductor", GOLD GGX F(alpha, 0.08)), 1, true, true},
+    {"ggx, smooth", BSDF("roughconductor", GOLD GGX F(alpha, 0.1)), 1, true, true},
     {"ggx, rough", BSDF("roughconductor", GOLD GGX F(alpha, 0.9)), 1, true, true},
     {"beckmann, rough", BSDF("roughconductor", GOLD F(alpha, 0.9)), 1, true, true},
     {"ggx u v", BSDF("roughconductor", GOLD GGX F(alpha_u, 0.1) F(alpha_v, 0.6)), 1, true, true},
@@ -101,7 +101,7 @@ enum { N_VIEWS = sizeof views / sizeof *views };
 // ---- a grid of directions ---------------------------------------------------------------------------------------
 
 // Even steps of theta, finer than the narrowest lobe, and of phi; each bin is a few cells of the midpoint rule.
-enum { BINS_THETA = 36, BINS_PHI = 24, SUB_THETA = 8, SUB_PHI = 10, BINS = BINS_THETA * BINS_PHI };
+enum { BINS_THETA = 36, BINS_PHI = 24, SUB_THETA = 6, SUB_PHI = 9, BINS = BINS_THETA * BINS_PHI };
 
 static int bin_of(Vec3 w)
 {

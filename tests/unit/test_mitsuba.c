@@ -265,22 +265,10 @@ static void stand_ins_are_named_once(void **state)
         const char *bsdf;
         SheenMaterialKind kind;
     } cases[] = {
-        {"<bsdf type=\"roughconductor\" id=\"m\"><float name=\"alpha\" value=\"0.1\"/></bsdf>",
-         SHEEN_MATERIAL_CONDUCTOR},
-        {"<bsdf type=\"roughdielectric\" id=\"m\"/>", SHEEN_MATERIAL_DIELECTRIC},
-        {"<bsdf type=\"roughplastic\" id=\"m\"><rgb name=\"diffuseReflectance\" value=\"0.25\"/></bsdf>",
+        {"<bsdf type=\"roughdiffuse\" id=\"m\"><rgb name=\"reflectance\" value=\"0.25\"/></bsdf>",
          SHEEN_MATERIAL_DIFFUSE},
-        {"<bsdf type=\"principled\" id=\"m\"><float name=\"metallic\" value=\"0.8\"/></bsdf>",
-         SHEEN_MATERIAL_CONDUCTOR},
-        {"<bsdf type=\"principled\" id=\"m\"><float name=\"spec_trans\" value=\"0.8\"/></bsdf>",
-         SHEEN_MATERIAL_DIELECTRIC},
-        {"<bsdf type=\"mask\" id=\"m\"><bsdf type=\"twosided\"><bsdf type=\"diffuse\"/></bsdf></bsdf>",
+        {"<bsdf type=\"principledthin\" id=\"m\"><float name=\"spec_trans\" value=\"0.8\"/></bsdf>",
          SHEEN_MATERIAL_DIFFUSE},
-        {"<bsdf type=\"bumpmap\" id=\"m\"><texture type=\"noise\"/><bsdf type=\"conductor\"/></bsdf>",
-         SHEEN_MATERIAL_CONDUCTOR},
-        {"<bsdf type=\"blendbsdf\" id=\"m\"><bsdf type=\"dielectric\"/><bsdf type=\"diffuse\"/></bsdf>",
-         SHEEN_MATERIAL_DIELECTRIC},
-        {"<bsdf type=\"null\" id=\"m\"/>", SHEEN_MATERIAL_THIN_DIELECTRIC},
         {"<bsdf type=\"marble\" id=\"m\"/>", SHEEN_MATERIAL_DIFFUSE},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
@@ -296,7 +284,180 @@ static void stand_ins_are_named_once(void **state)
         assert_non_null(strstr(k->warnings, "stands in"));
         assert_int_equal(k->scene->n_materials, 1);
         if (strstr(cases[i].bsdf, "0.25")) assert_float_equal(m->reflectance.value.r, 0.25f, 0.0f);
-        if (strstr(cases[i].bsdf, "twosided")) assert_true(m->two_sided);
+    }
+}
+
+// ---- the other materials ----------------------------------------------------------------------------------------
+
+/** Both spellings of a parameter; defaults of Mitsuba's manuals. */
+static void rough_materials_and_plastics(void **state)
+{
+    Kit *k = *state;
+    const SheenMaterial *m = material(k, "3.0.0", "<bsdf type=\"roughconductor\" id=\"m\"/>");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_ROUGH_CONDUCTOR);
+    assert_int_equal(m->distribution, SHEEN_DISTRIBUTION_BECKMANN);
+    assert_float_equal(m->alpha_u.value.g, 0.1f, 0.0f);
+    assert_false(m->anisotropic);
+    m = material(k, "0.6.0",
+                 "<bsdf type=\"roughconductor\" id=\"m\"><string name=\"distribution\" value=\"ggx\"/>"
+                 "<float name=\"alphaU\" value=\"0.3\"/><float name=\"alphaV\" value=\"0.05\"/>"
+                 "<boolean name=\"sampleVisible\" value=\"false\"/></bsdf>");
+    assert_int_equal(m->distribution, SHEEN_DISTRIBUTION_GGX);
+    assert_float_equal(m->alpha_u.value.g, 0.3f, 0.0f);
+    assert_float_equal(m->alpha_v.value.g, 0.05f, 0.0f);
+    assert_true(m->anisotropic);
+    m = material(k, "3.0.0",
+                 "<bsdf type=\"roughdielectric\" id=\"m\"><texture name=\"alpha\" type=\"checkerboard\">"
+                 "<rgb name=\"color0\" value=\"0.2\"/></texture></bsdf>");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_ROUGH_DIELECTRIC);
+    assert_int_equal(m->alpha_u.kind, SHEEN_TEXTURE_CHECKERBOARD);
+    assert_true(!m->anisotropic && m->has_two_sides);
+    assert_float_equal(m->ior, 1.504183292f, 1e-6f);
+
+    m = material(k, "0.5.0",
+                 "<bsdf type=\"plastic\" id=\"m\"><srgb name=\"diffuseReflectance\" value=\"#ffffff\"/>"
+                 "<boolean name=\"nonlinear\" value=\"true\"/></bsdf>");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_PLASTIC);
+    assert_true(m->nonlinear);
+    assert_float_equal(m->ior, 1.49f / 1.000277f, 1e-6f);
+    assert_float_equal(m->reflectance.value.g, 1.0f, 0.0f);
+    assert_float_equal(m->inside, 0.5905f, 1e-3f); // Egan and Hilgeman's fit
+    m = material(k, "3.0.0",
+                 "<bsdf type=\"roughplastic\" id=\"m\"><string name=\"int_ior\" value=\"diamond\"/></bsdf>");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_ROUGH_PLASTIC);
+    assert_non_null(m->coat);
+    assert_int_equal(k->n_warnings, 2); // no light, no camera
+}
+
+static void empirical_materials(void **state)
+{
+    Kit *k = *state;
+    const SheenMaterial *m =
+        material(k, "0.6.0", "<bsdf type=\"phong\" id=\"m\"><float name=\"exponent\" value=\"12\"/></bsdf>");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_PHONG);
+    assert_float_equal(m->exponent, 12.0f, 1e-5f);
+    assert_float_equal(m->specular_reflectance.value.g, 0.2f, 0.0f);
+    m = material(k, "0.6.0",
+                 "<bsdf type=\"ward\" id=\"m\"><string name=\"variant\" value=\"ward-duer\"/>"
+                 "<float name=\"alphaU\" value=\"0.3\"/></bsdf>");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_WARD);
+    assert_int_equal(m->ward, SHEEN_WARD_DUER);
+    assert_true(m->anisotropic);
+    assert_int_equal(k->n_warnings, 2);
+    m = material(k, "0.6.0",
+                 "<bsdf type=\"phong\" id=\"m\"><rgb name=\"diffuseReflectance\" value=\"0.9 0.5 0.1\"/>"
+                 "<rgb name=\"specularReflectance\" value=\"0.6\"/></bsdf>");
+    assert_non_null(strstr(k->warnings, "reflects 1.5 times the light"));
+    kit_assert_rgb(rgb_add(m->reflectance.value, m->specular_reflectance.value), rgb(0.99f, 0.726f, 0.462f), 1e-6f);
+}
+
+static void principled_materials(void **state)
+{
+    Kit *k = *state;
+    const SheenMaterial *m = material(k, "3.0.0", "<bsdf type=\"principled\" id=\"m\"/>");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_PRINCIPLED);
+    assert_float_equal(m->ior, 1.5f, 1e-6f); // specular 0.5 is 0.04 at normal incidence
+    assert_float_equal(m->alpha_u.value.g, 0.5f, 0.0f);
+    assert_true(!m->has_two_sides && !m->anisotropic);
+    m = material(k, "3.0.0",
+                 "<bsdf type=\"principled\" id=\"m\"><float name=\"spec_trans\" value=\"0.5\"/>"
+                 "<float name=\"eta\" value=\"1.3\"/><float name=\"anisotropic\" value=\"0.4\"/>"
+                 "<float name=\"main_specular_sampling_rate\" value=\"2\"/></bsdf>");
+    assert_float_equal(m->ior, 1.3f, 1e-6f);
+    assert_float_equal(m->principled->spec_trans.value.g, 0.5f, 0.0f);
+    assert_true(m->has_two_sides && m->anisotropic);
+    assert_int_equal(k->n_warnings, 2);
+}
+
+static void materials_inside_others(void **state)
+{
+    Kit *k = *state;
+    const SheenMaterial *m = material(k, "3.0.0",
+                                      "<bsdf type=\"mask\" id=\"m\"><float name=\"opacity\" value=\"0.3\"/>"
+                                      "<bsdf type=\"twosided\"><bsdf type=\"diffuse\"/></bsdf></bsdf>");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_MASK);
+    assert_float_equal(m->weight.value.g, 0.3f, 0.0f);
+    assert_true(k->scene->materials[m->nested[0]].two_sided);
+    assert_true(m->n_lobes == 2 && m->n_wraps == 1);
+    m = material(k, "3.0.0",
+                 "<bsdf type=\"blendbsdf\" id=\"m\"><float name=\"weight\" value=\"0.25\"/><ref id=\"a\"/>"
+                 "<ref id=\"a\"/></bsdf><bsdf type=\"diffuse\" id=\"a\"/>");
+    assert_int_equal(m->nested[0], m->nested[1]); // one material, used twice
+    assert_int_equal(k->scene->n_materials, 2);
+    m = material(k, "0.6.0",
+                 "<bsdf type=\"twosided\" id=\"m\"><bsdf type=\"diffuse\"/><bsdf type=\"plastic\"/></bsdf>");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_SIDES);
+    m = material(k, "0.6.0",
+                 "<bsdf type=\"mixturebsdf\" id=\"m\"><string name=\"weights\" value=\"0.1, 0.2, 0.3\"/>"
+                 "<bsdf type=\"diffuse\"/><bsdf type=\"plastic\"/><bsdf type=\"conductor\"/></bsdf>");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_BLEND);
+    assert_float_equal(m->weight.value.g, 0.4f, 1e-6f); // black
+    assert_float_equal(k->scene->materials[m->nested[0]].weight.value.g, 0.5f, 1e-6f);
+    m = material(k, "0.6.0",
+                 "<bsdf type=\"coating\" id=\"m\"><float name=\"thickness\" value=\"2\"/><rgb name=\"sigmaA\" "
+                 "value=\"0.1 0.2 3\"/><bsdf type=\"bumpmap\"><texture type=\"scale\"><float name=\"scale\" "
+                 "value=\"0.5\"/><texture type=\"checkerboard\"/></texture><bsdf type=\"diffuse\"/></bsdf></bsdf>");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_COATING);
+    kit_assert_rgb(m->absorption, rgb(0.2f, 0.4f, 6), 1e-6f);
+    const SheenMaterial *bump = &k->scene->materials[m->nested[0]];
+    assert_int_equal(bump->kind, SHEEN_MATERIAL_BUMP);
+    assert_float_equal(bump->map_scale, 0.5f, 0.0f);
+    assert_false(bump->shadow_normals); // version 3 only
+    assert_int_equal(k->n_warnings, 2);
+    // A transmitting material has two sides of its own.
+    m = material(k, "3.0.0", "<bsdf type=\"twosided\" id=\"m\"><bsdf type=\"roughdielectric\"/></bsdf>");
+    assert_false(m->two_sided);
+    assert_non_null(strstr(k->warnings, "'twosided' ignored"));
+}
+
+static void broken_materials_are_mended_with_a_line(void **state)
+{
+    Kit *k = *state;
+    static const struct {
+        const char *bsdf, *says;
+    } cases[] = {
+        {"<bsdf type=\"roughconductor\" id=\"m\">\n<float name=\"alpha\" value=\"-0.5\"/></bsdf>",
+         "scene.xml:3:1: 'alpha' is -0.5, outside [0.0001, 10]: taken as 0.0001"},
+        {"<bsdf type=\"roughplastic\" id=\"m\"><string name=\"distribution\" value=\"phong\"/></bsdf>",
+         "scene.xml:2:46: the distribution 'phong' is not supported: 'beckmann' stands in"},
+        {"<bsdf type=\"mask\" id=\"m\"><float name=\"opacity\" value=\"7\"/><bsdf type=\"diffuse\"/></bsdf>",
+         "'opacity' is 7, outside [0, 1]: taken as 1"},
+        {"<bsdf type=\"blendbsdf\" id=\"m\"><float name=\"weight\" value=\"-2\"/><bsdf type=\"diffuse\"/>"
+         "<bsdf type=\"diffuse\"/></bsdf>",
+         "'weight' is -2, outside [0, 1]: taken as 0"},
+        {"<bsdf type=\"blendbsdf\" id=\"m\"><bsdf type=\"diffuse\"/></bsdf>", "'blendbsdf' needs two materials"},
+        {"<bsdf type=\"blendbsdf\" id=\"m\"><bsdf type=\"diffuse\"/><bsdf type=\"diffuse\"/><bsdf "
+         "type=\"plastic\"/></bsdf>",
+         "a further material inside 'blendbsdf' is left out"},
+        {"<bsdf type=\"mask\" id=\"m\"/>", "no material inside 'mask': diffuse 0.5 stands in"},
+        {"<bsdf type=\"coating\" id=\"m\"/>", "no material inside 'coating'"},
+        {"<bsdf type=\"twosided\" id=\"m\"/>", "no material inside 'twosided'"},
+        {"<bsdf type=\"bumpmap\" id=\"m\"><bsdf type=\"diffuse\"/></bsdf>", "'bumpmap' has no texture and is ignored"},
+        {"<bsdf type=\"principled\" id=\"m\"><float name=\"metallic\" value=\"3\"/></bsdf>",
+         "'metallic' is 3, outside [0, 1]: taken as 1"},
+        {"<bsdf type=\"principled\" id=\"m\"><float name=\"eta\" value=\"1.4\"/><float name=\"specular\" "
+         "value=\"0.4\"/></bsdf>",
+         "'specular' is ignored beside 'eta'"},
+        {"<bsdf type=\"plastic\" id=\"m\"><float name=\"int_ior\" value=\"1000\"/></bsdf>",
+         "material 'm': the refractive index is 999.723, outside [0.1, 10]: taken as 10"},
+        {"<bsdf type=\"coating\" id=\"m\"><rgb name=\"sigma_a\" value=\"-1 0 0\"/><bsdf type=\"diffuse\"/></bsdf>",
+         "material 'm': the absorption is -1, outside [0, 1e+06]: taken as 0"},
+        {"<bsdf type=\"plastic\" id=\"m\"><float name=\"gloss\" value=\"1\"/></bsdf>",
+         "<float name=\"gloss\"> is not supported in <bsdf type=\"plastic\">"},
+        {"<bsdf type=\"ward\" id=\"m\"><string name=\"variant\" value=\"x\"/></bsdf>", "the variant 'x' is not known"},
+        {"<bsdf type=\"mixturebsdf\" id=\"m\"><string name=\"weights\" value=\"3 1\"/><bsdf type=\"diffuse\"/>"
+         "<bsdf type=\"conductor\"/></bsdf>",
+         "the weights sum to 4: scaled to 1"},
+        {"<bsdf type=\"blendbsdf\" id=\"m\"><ref id=\"four\"/><ref id=\"four\"/></bsdf><bsdf type=\"blendbsdf\" "
+         "id=\"four\"><ref id=\"three\"/><ref id=\"three\"/></bsdf><bsdf type=\"principled\" id=\"three\"/>",
+         "material 'm' has too many parts: the first of them stands in"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        char body[2048];
+        snprintf(body, sizeof body, "<shape type=\"rectangle\"><ref id=\"m\"/></shape>%s", cases[i].bsdf);
+        material_named(kit_scene(k, body), "m");
+        if (k->n_warnings != 3 || !strstr(k->warnings, cases[i].says))
+            fail_msg("wanted '%s', said: %s", cases[i].says, k->warnings);
     }
 }
 
@@ -606,6 +767,11 @@ int main(void)
         KIT_TEST(shape_groups_and_instances),
         KIT_TEST(supported_materials),
         KIT_TEST(stand_ins_are_named_once),
+        KIT_TEST(rough_materials_and_plastics),
+        KIT_TEST(empirical_materials),
+        KIT_TEST(principled_materials),
+        KIT_TEST(materials_inside_others),
+        KIT_TEST(broken_materials_are_mended_with_a_line),
         KIT_TEST(nested_references_and_aliases),
         KIT_TEST(colors_and_spectra),
         KIT_TEST(lights_of_spectra),
