@@ -6,29 +6,32 @@
 
 // Share of the light from v that a single scattering sends back (`reflected`) or through: the mean over visible normals
 // of Fresnel's share times that which is not shadowed on the way out. eta: index beyond over index on the side of v.
-static float share(const Microfacet *s, float eta, float cosine, bool reflected)
+static float share(const Microfacet *s, float eta, float cosine, bool reflected, uint32_t n)
 {
-    enum { SAMPLES = 1024 };
     Vec3 v = v3(safe_sqrtf(1.0f - cosine * cosine), 0.0f, cosine);
     double sum = 0.0;
-    for (uint32_t i = 0; i < SAMPLES; ++i) {
-        Vec3 m = sheen_microfacet_sample(s, v, warp_hammersley(i, SAMPLES)), out = v3_reflect(v, m);
+    for (uint32_t i = 0; i < n; ++i) {
+        Vec3 m = sheen_microfacet_sample(s, v, warp_hammersley(i, n)), out = v3_reflect(v, m);
         float cos_t, c = v3_dot(v, m), f = sheen_fresnel_dielectric(c, eta, &cos_t);
         if (!reflected) out = v3_mad(v3_scale(v, -1.0f / eta), c / eta + cos_t, m);
         if ((out.z > 0.0f) == reflected) sum += (double)((reflected ? f : 1.0f - f) * sheen_microfacet_g1(s, out, m));
     }
-    return clampf((float)(sum / SAMPLES), 0.0f, 1.0f);
+    return clampf((float)(sum / n), 0.0f, 1.0f);
 }
 
 static void fill_row(SheenCoat *c, uint32_t row, float alpha)
 {
+    // Outside the cosines need many samples each; inside, where they are summed, the critical angle needs many cosines.
+    enum { SAMPLES = 1024, INSIDE_COSINES = 256, INSIDE_SAMPLES = 256 };
     Microfacet s = {c->distribution, alpha, alpha};
-    double inside = 0.0;
     for (int i = 0; i < SHEEN_COAT_COSINES; ++i) {
         float cosine = maxf((float)i / (SHEEN_COAT_COSINES - 1), 1e-4f);
-        c->transmittance[row][i] = share(&s, c->ior, cosine, false);
-        float middle = ((float)i + 0.5f) / SHEEN_COAT_COSINES;
-        inside += 2.0 * (double)(middle * share(&s, 1.0f / c->ior, middle, true)) / SHEEN_COAT_COSINES;
+        c->transmittance[row][i] = share(&s, c->ior, cosine, false, SAMPLES);
+    }
+    double inside = 0.0;
+    for (int i = 0; i < INSIDE_COSINES; ++i) {
+        float cosine = ((float)i + 0.5f) / INSIDE_COSINES;
+        inside += 2.0 * (double)(cosine * share(&s, 1.0f / c->ior, cosine, true, INSIDE_SAMPLES)) / INSIDE_COSINES;
     }
     // Below 1, so that what bounces inside has a finite sum.
     c->inside[row] = clampf((float)inside, 0.0f, 0.999f);
