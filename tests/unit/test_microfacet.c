@@ -108,7 +108,7 @@ static void test_coats(void **state)
             const SheenCoat *one = sheen_coat_create(arena, 1.5f, (SheenDistribution)d, alpha, alpha);
             for (float c = 0.05f; c <= 1; c += 0.19f)
                 assert_near((double)sheen_coat_transmittance(many, alpha, c),
-                            (double)sheen_coat_transmittance(one, alpha, c), 4e-3);
+                            (double)sheen_coat_transmittance(one, alpha, c), 0.01); // linear between rows
             assert_near((double)sheen_coat_inside(many, alpha), (double)sheen_coat_inside(one, alpha), 2e-3);
             assert_near((double)sheen_coat_mean(many, alpha), (double)sheen_coat_mean(one, alpha), 2e-3);
         }
