@@ -32,7 +32,8 @@ typedef struct Mitsuba {
     int version;    // major
     bool with_files;
     MitsubaBitmap *bitmaps;
-    int material_depth; // of the materials inside each other that are being read
+    uint32_t lamp_material; // of lamps without one, counted from 1; 0 when there is none yet
+    int material_depth;     // of the materials inside each other that are being read
     SheenStatus status;
 } Mitsuba;
 
@@ -123,6 +124,8 @@ void sheen_mi_roughness(Mitsuba *m, SheenXml *e, SheenMaterial *out);
 
 /** mitsuba_bsdf.c: the material of a <bsdf>, made when first asked for; NULL is Mitsuba's default, diffuse 0.5. */
 uint32_t sheen_mi_material(Mitsuba *m, SheenXml *bsdf);
+/** The default of shapes that shine: black. */
+uint32_t sheen_mi_lamp_material(Mitsuba *m);
 
 /** mitsuba_shape.c: adds a shape of the world, or of the open group; its emitter is left out in a group. */
 void sheen_mi_shape(Mitsuba *m, SheenXml *e, bool in_group);

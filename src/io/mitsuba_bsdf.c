@@ -334,3 +334,16 @@ uint32_t sheen_mi_material(Mitsuba *m, SheenXml *bsdf)
     bsdf->index = sheen_builder_add_material(m->builder, &material);
     return bsdf->index;
 }
+
+uint32_t sheen_mi_lamp_material(Mitsuba *m)
+{
+    if (m->lamp_material == 0) {
+        SheenMaterial material = sheen_mi_default_material();
+        material.reflectance = sheen_texture_constant(rgb_gray(0.0f));
+        material.name = "lamp";
+        uint32_t index = sheen_builder_add_material(m->builder, &material);
+        if (index == SHEEN_NONE) return index;
+        m->lamp_material = index + 1;
+    }
+    return m->lamp_material - 1;
+}

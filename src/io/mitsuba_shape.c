@@ -234,7 +234,7 @@ void sheen_mi_shape(Mitsuba *m, SheenXml *e, bool in_group)
     if (!plugin->read(m, e, &shape)) return;
     SheenXml *bsdf = sheen_mi_nested(m, e, "bsdf"), *emitter = sheen_mi_nested(m, e, "emitter");
     if (m->status) return;
-    shape.material = sheen_mi_material(m, bsdf);
+    shape.material = emitter && !bsdf ? sheen_mi_lamp_material(m) : sheen_mi_material(m, bsdf);
     uint32_t index = sheen_builder_add_shape(m->builder, &shape);
     if (emitter) add_area_light(m, emitter, index, in_group);
     if (!m->status) sheen_mi_report_unused(m, e);
