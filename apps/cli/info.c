@@ -42,7 +42,23 @@ static const char *const material_kinds[] = {
     [SHEEN_MATERIAL_CONDUCTOR] = "conductor",
     [SHEEN_MATERIAL_DIELECTRIC] = "dielectric",
     [SHEEN_MATERIAL_THIN_DIELECTRIC] = "thin-dielectric",
+    [SHEEN_MATERIAL_ROUGH_CONDUCTOR] = "rough-conductor",
+    [SHEEN_MATERIAL_ROUGH_DIELECTRIC] = "rough-dielectric",
+    [SHEEN_MATERIAL_PLASTIC] = "plastic",
+    [SHEEN_MATERIAL_ROUGH_PLASTIC] = "rough-plastic",
+    [SHEEN_MATERIAL_DIFFUSE_TRANSMIT] = "diffuse-transmitter",
+    [SHEEN_MATERIAL_PHONG] = "phong",
+    [SHEEN_MATERIAL_WARD] = "ward",
+    [SHEEN_MATERIAL_PRINCIPLED] = "principled",
+    [SHEEN_MATERIAL_BLEND] = "blend",
+    [SHEEN_MATERIAL_SIDES] = "two-sides",
+    [SHEEN_MATERIAL_MASK] = "mask",
+    [SHEEN_MATERIAL_BUMP] = "bump-map",
+    [SHEEN_MATERIAL_NORMAL] = "normal-map",
+    [SHEEN_MATERIAL_COATING] = "coating",
+    [SHEEN_MATERIAL_ROUGH_COATING] = "rough-coating",
 };
+_Static_assert(sizeof material_kinds / sizeof *material_kinds == SHEEN_MATERIAL_COUNT, "each kind has a name");
 static const char *const light_kinds[] = {
     [SHEEN_LIGHT_AREA] = "area",
     [SHEEN_LIGHT_POINT] = "point",

@@ -36,6 +36,8 @@ static const Traits traits_of_kind[] = {
         {.n_lobes = 1, .n_nested = 1, .n_wraps = 1, .has_ior = true, .has_alpha = true, .coat = true},
 };
 
+_Static_assert(sizeof traits_of_kind / sizeof *traits_of_kind == SHEEN_MATERIAL_COUNT, "each kind has its traits");
+
 typedef struct Check {
     const SheenLog *log;
     const char *scene;

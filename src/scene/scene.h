@@ -88,6 +88,7 @@ typedef enum SheenMaterialKind {
     SHEEN_MATERIAL_NORMAL,  // nested[0] about the normals of map, (colour + 1) / 2 in the frame of normal and dp/du
     SHEEN_MATERIAL_COATING, // nested[0] under a smooth interface: ior, absorption, specular_reflectance
     SHEEN_MATERIAL_ROUGH_COATING, // the same, and distribution and alpha_u for both axes
+    SHEEN_MATERIAL_COUNT,         // not a kind
 } SheenMaterialKind;
 
 /** A material has at most so many elementary BSDFs and wrappers: they are looked up in shading, on the stack. */
