@@ -52,7 +52,8 @@ void sheen_follow(const SheenWork *work, const Ray *ray, const Hit *hit, SheenSa
             out->scatters = sheen_lambertian_point(lambertian, &s, wo, &out->point);
             return;
         }
-        Bsdf bsdf = sheen_bsdf_at(work->scene, &s);
+        Bsdf bsdf;
+        sheen_bsdf_look_up(work->scene, &s, &bsdf);
         sheen_bsdf_simplify(&bsdf);
         if (!sheen_bsdf_is_delta(&bsdf)) {
             out->scatters = sheen_diffuse_point(&s, &bsdf, wo, &out->point);

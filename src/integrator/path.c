@@ -120,7 +120,7 @@ static bool make_vertex(const Path *path, const SurfacePoint *s, Vertex *v)
     float cos_g = v3_dot(v->wo, s->ng);
     if (!(cos_g * v->wo_l.z > 0.0f)) return false;
     v->side = cos_g > 0.0f ? s->ng : v3_neg(s->ng);
-    v->bsdf = sheen_bsdf_at(path->work->scene, s);
+    sheen_bsdf_look_up(path->work->scene, s, &v->bsdf);
     v->both_sides = sheen_bsdf_transmits(&v->bsdf);
     return true;
 }

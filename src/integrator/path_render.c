@@ -80,7 +80,8 @@ static void add_first_hit(const Passes *p, double *px, const Ray *ray, const Hit
     if (sums->offset[SHEEN_AOV_NORMAL]) add_vec3(px + sums->offset[SHEEN_AOV_NORMAL], s.ns);
     if (sums->offset[SHEEN_AOV_UV]) add_vec3(px + sums->offset[SHEEN_AOV_UV], v3(s.uv.x, s.uv.y, 0.0f));
     if (sums->offset[SHEEN_AOV_ALBEDO]) {
-        Bsdf bsdf = sheen_bsdf_at(p->work->scene, &s);
+        Bsdf bsdf;
+        sheen_bsdf_look_up(p->work->scene, &s, &bsdf);
         Frame frame = frame_from_normal(s.ns);
         add_rgb(px + sums->offset[SHEEN_AOV_ALBEDO], sheen_bsdf_albedo(&bsdf, frame_to_local(&frame, v3_neg(ray->d))));
     }

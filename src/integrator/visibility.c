@@ -124,7 +124,8 @@ static void add_first_hit(const SheenWork *work, const EyeRay *r, const Hit *hit
     film_add(film, SHEEN_AOV_NORMAL, x, y, rgb_scale(rgb(n.x, n.y, n.z), weight));
     if (film->aov[SHEEN_AOV_ALBEDO]) {
         Frame frame = frame_from_normal(n);
-        Bsdf bsdf = sheen_bsdf_at(work->scene, s);
+        Bsdf bsdf;
+        sheen_bsdf_look_up(work->scene, s, &bsdf);
         Rgb albedo = sheen_bsdf_albedo(&bsdf, frame_to_local(&frame, v3_neg(r->ray.d)));
         film_add(film, SHEEN_AOV_ALBEDO, x, y, rgb_scale(albedo, weight));
     }
@@ -167,7 +168,8 @@ static bool arrive(const SheenWork *work, const SheenEye *eye, EyeRay *r, const 
     if (lambertian) {
         if (!sheen_lambertian_point(lambertian, &s, wo, &p.point)) return true;
     } else {
-        Bsdf bsdf = sheen_bsdf_at(work->scene, &s);
+        Bsdf bsdf;
+        sheen_bsdf_look_up(work->scene, &s, &bsdf);
         sheen_bsdf_simplify(&bsdf);
         if (sheen_bsdf_is_delta(&bsdf)) return split(work, r, &s, &bsdf, next, v);
         if (!sheen_diffuse_point(&s, &bsdf, wo, &p.point)) return true;

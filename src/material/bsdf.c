@@ -94,6 +94,11 @@ static void share_out(const Bsdf *bsdf, unsigned classes, Vec3 wo, Shares *s)
 {
     float sum = 0.0f;
     s->n_counting = s->only = 0;
+    if (bsdf->n_lobes == 1 && counts(&bsdf->lobes[0], classes)) { // the choice is simple
+        s->p[0] = 1.0f;
+        s->n_counting = 1;
+        return;
+    }
     for (uint32_t i = 0; i < bsdf->n_lobes; ++i) {
         s->p[i] = counts(&bsdf->lobes[i], classes) ? importance_of(bsdf, &bsdf->lobes[i], wo) : 0.0f;
         if (!(s->p[i] > 0.0f)) continue;

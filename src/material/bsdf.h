@@ -72,6 +72,8 @@ typedef struct BsdfSample {
 } BsdfSample;
 
 /** Looks the textures up at a surface point. */
+void sheen_bsdf_look_up(const SheenScene *scene, const SurfacePoint *s, Bsdf *out);
+/** The same where the copy of more than a kilobyte does not count. */
 Bsdf sheen_bsdf_at(const SheenScene *scene, const SurfacePoint *s);
 
 // ---- the whole --------------------------------------------------------------------------------------------------

@@ -317,12 +317,21 @@ static void add_material(Place *p, Inside in, const SheenMaterial *m)
     }
 }
 
+// What is not used of *out stays as it is: this is called for every hit.
+void sheen_bsdf_look_up(const SheenScene *scene, const SurfacePoint *s, Bsdf *out)
+{
+    const SheenMaterial *m = &scene->materials[scene->shapes[s->shape].material];
+    Place p = {scene, s, out};
+    out->n_lobes = out->n_wraps = 0;
+    Inside in = {.weight = 1.0f};
+    if (m->n_wraps > (m->two_sided ? 1u : 0u))
+        in.frame = frame_from_normal(s->ns); // none but maps and grain ask for it
+    add_material(&p, in, m);
+}
+
 Bsdf sheen_bsdf_at(const SheenScene *scene, const SurfacePoint *s)
 {
-    Bsdf bsdf; // what is not used stays as it is: this is called for every hit
-    bsdf.n_lobes = bsdf.n_wraps = 0;
-    Place p = {scene, s, &bsdf};
-    add_material(&p, (Inside){.weight = 1.0f, .frame = frame_from_normal(s->ns)},
-                 &scene->materials[scene->shapes[s->shape].material]);
+    Bsdf bsdf;
+    sheen_bsdf_look_up(scene, s, &bsdf);
     return bsdf;
 }
