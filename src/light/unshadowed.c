@@ -34,34 +34,51 @@ static inline float edge_factor(float x)
 // sum over its edges (Lambert's formula). A surface that is turned away sees it as it would the sphere with the same
 // form factor. Where the edges would cancel to nothing in float, the polygon is a point. The share by the highest
 // vertex keeps the estimate above zero wherever a part of the polygon is above the horizon.
-VECTOR_LOOP weigh_polygons(const Polygons *g, uint32_t first, uint32_t count, Vec3 p, Vec3 n, float *restrict w)
+static inline float weigh_polygon(const Polygons *g, uint32_t i, Vec3 p, Vec3 n)
+{
+    Vec3 v[4], sum = v3(0, 0, 0), f = v3(0, 0, 0);
+    float top = -1.0f;
+    float front = (p.x - g->x[0][i]) * g->nx[i] + (p.y - g->y[0][i]) * g->ny[i] + (p.z - g->z[0][i]) * g->nz[i];
+    for (int k = 0; k < 4; ++k) {
+        Vec3 d = v3_sub(v3(g->x[k][i], g->y[k][i], g->z[k][i]), p);
+        sum = v3_add(sum, d);
+        v[k] = v3_scale(d, 1.0f / sqrtf(v3_length2(d) + 1e-30f));
+        top = maxf(top, v3_dot(v[k], n));
+    }
+    for (int k = 0; k < 4; ++k) {
+        Vec3 a = v[k], b = v[(k + 1) & 3];
+        f = v3_mad(f, edge_factor(v3_dot(a, b)), v3_cross(b, a)); // toward the light, seen from its front
+    }
+    float d2 = 0.0625f * v3_length2(sum) + 1e-30f, d = sqrtf(d2);
+    float length = sqrtf(v3_length2(f)) + 1e-20f;
+    float cos_far = 0.25f * v3_dot(sum, n) / d, cos_near = v3_dot(f, n) / length;
+    float size = g->area[i] / d2, factor_far = minf(SHEEN_INV_PI * size * front / d, 1.0f);
+    bool far = size < 1e-3f;
+    float factor = far ? factor_far : maxf(length, 0.1f * factor_far);
+    float c = far ? cos_far : cos_near;
+    float seen = horizon(c, sqrtf(maxf(factor, 0.0f)) + 1e-20f) + 0.02f * maxf(top, 0.0f);
+    float is_seen = (front > 0.0f ? 1.0f : 0.0f) * (top > 0.0f ? 1.0f : 0.0f);
+    return SHEEN_PI * g->power[i] * factor * seen * is_seen;
+}
+
+VECTOR_LOOP weigh_polygon_vectors(const Polygons *g, uint32_t first, uint32_t count, Vec3 p, Vec3 n, float *restrict w)
 {
     uint32_t end = first + whole_vectors(count);
-    for (uint32_t i = first; i < end; ++i) {
-        Vec3 v[4], sum = v3(0, 0, 0), f = v3(0, 0, 0);
-        float top = -1.0f;
-        float front = (p.x - g->x[0][i]) * g->nx[i] + (p.y - g->y[0][i]) * g->ny[i] + (p.z - g->z[0][i]) * g->nz[i];
-        for (int k = 0; k < 4; ++k) {
-            Vec3 d = v3_sub(v3(g->x[k][i], g->y[k][i], g->z[k][i]), p);
-            sum = v3_add(sum, d);
-            v[k] = v3_scale(d, 1.0f / sqrtf(v3_length2(d) + 1e-30f));
-            top = maxf(top, v3_dot(v[k], n));
-        }
-        for (int k = 0; k < 4; ++k) {
-            Vec3 a = v[k], b = v[(k + 1) & 3];
-            f = v3_mad(f, edge_factor(v3_dot(a, b)), v3_cross(b, a)); // toward the light, seen from its front
-        }
-        float d2 = 0.0625f * v3_length2(sum) + 1e-30f, d = sqrtf(d2);
-        float length = sqrtf(v3_length2(f)) + 1e-20f;
-        float cos_far = 0.25f * v3_dot(sum, n) / d, cos_near = v3_dot(f, n) / length;
-        float size = g->area[i] / d2, factor_far = minf(SHEEN_INV_PI * size * front / d, 1.0f);
-        bool far = size < 1e-3f;
-        float factor = far ? factor_far : maxf(length, 0.1f * factor_far);
-        float c = far ? cos_far : cos_near;
-        float seen = horizon(c, sqrtf(maxf(factor, 0.0f)) + 1e-20f) + 0.02f * maxf(top, 0.0f);
-        float is_seen = (front > 0.0f ? 1.0f : 0.0f) * (top > 0.0f ? 1.0f : 0.0f);
-        w[i - first] = SHEEN_PI * g->power[i] * factor * seen * is_seen;
-    }
+    for (uint32_t i = first; i < end; ++i) w[i - first] = weigh_polygon(g, i, p, n);
+}
+
+static bool is_in_front(const Polygons *g, uint32_t i, Vec3 p)
+{
+    return (p.x - g->x[0][i]) * g->nx[i] + (p.y - g->y[0][i]) * g->ny[i] + (p.z - g->z[0][i]) * g->nz[i] > 0.0f;
+}
+
+// A single one needs no vectors, and nothing at all where it is seen from behind.
+static void weigh_polygons(const Polygons *g, uint32_t first, uint32_t count, Vec3 p, Vec3 n, float *restrict w)
+{
+    if (count > 1)
+        weigh_polygon_vectors(g, first, count, p, n, w);
+    else
+        w[0] = is_in_front(g, first, p) ? weigh_polygon(g, first, p, n) : 0.0f;
 }
 
 VECTOR_LOOP weigh_spheres(const Spheres *g, uint32_t first, uint32_t count, Vec3 p, Vec3 n, float *restrict w)
