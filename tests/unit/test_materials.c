@@ -252,6 +252,7 @@ static void test_parts_make_the_whole(void **state)
                 double f = (double)sheen_bsdf_eval_of(&b, SHEEN_BSDF_GLOSSY, wo, s.wi_l).g;
                 double pdf = (double)sheen_bsdf_pdf_of(&b, SHEEN_BSDF_GLOSSY, wo, s.wi_l);
                 assert_true(!s.delta && pdf > 0);
+                assert_near("glossy pdf", cases[i].name, wo, (double)s.pdf, pdf, 2e-3 * pdf);
                 assert_near("glossy weight", cases[i].name, wo, (double)s.weight.g * pdf, f, 2e-3 * f + 1e-6);
             }
             if (sheen_bsdf_sample_of(&b, SHEEN_BSDF_DELTA, wo, random_1d(&r), random_2d(&r), &s)) assert_true(s.delta);
@@ -393,6 +394,61 @@ static void test_delta_lobes_of_mixtures(void **state)
     sheen_scene_destroy(&scene);
 }
 
+// Grazing and perpendicular directions, ends of the random numbers: nothing that is not a number comes out.
+static void test_extremes_stay_finite(void **state)
+{
+    (void)state;
+    const Vec3 ends[] = {{0, 0, 1},
+                         {0, 0, -1},
+                         {1, 0, 0},
+                         {0, -1, 0},
+                         {1, 0, 1e-30f},
+                         {-1, 0, 1e-7f},
+                         {0, 1, -1e-7f},
+                         {1e-20f, 0, 1},
+                         {0.7071f, 0, 0.7071f},
+                         {-0.7071f, 0, 0.7071f},
+                         {0, 0.9999f, 0.0141f},
+                         {0, -0.9999f, -0.0141f}};
+    const float numbers[] = {0, 1e-7f, 0.5f, 0x1.fffffep-1f};
+    enum { N_ENDS = sizeof ends / sizeof *ends };
+    static const char *const more[] = {
+        BSDF("roughconductor", GGX F(alpha, 0.0001)),
+        BSDF("roughconductor", F(alpha, 10)),
+        BSDF("roughdielectric", F(alpha, 0.0001)),
+        BSDF("roughdielectric", F(int_ior, 1) F(ext_ior, 1)),
+        BSDF("phong", F(exponent, 1000000)),
+        BSDF("ward", F(alpha, 0.0001)),
+        BSDF("principled", F(roughness, 0) F(clearcoat, 1) F(clearcoat_gloss, 1)),
+        BSDF("principled", F(roughness, 1) F(anisotropic, 1) F(spec_trans, 1) F(specular, 0)),
+        BSDF("coating", F(int_ior, 1) F(ext_ior, 3) BSDF("diffuse", "")),
+        BSDF("plastic", F(int_ior, 1) F(ext_ior, 9) RGB(diffuse_reflectance, 1))};
+    const int n_more = sizeof more / sizeof *more;
+    for (int i = 0; i < N_CASES + n_more; ++i) {
+        SheenScene *scene = scene_of(i < N_CASES ? cases[i].xml : more[i - N_CASES]);
+        Bsdf b = bsdf_at(scene, v2(NAN, INFINITY));
+        for (int roughened = 0; roughened < 2; ++roughened) {
+            for (int o = 0; o < N_ENDS; ++o) {
+                assert_true(rgb_finite(sheen_bsdf_albedo(&b, ends[o])));
+                for (int k = 0; k < N_ENDS; ++k) {
+                    Rgb f = sheen_bsdf_eval(&b, ends[o], ends[k]);
+                    float pdf = sheen_bsdf_pdf(&b, ends[o], ends[k]);
+                    if (!rgb_finite(f) || !(f.g >= 0) || !(pdf >= 0) || !isfinite(pdf))
+                        fail_msg("%s: %d %d: %g, %g", scene->materials[0].name, o, k, (double)f.g, (double)pdf);
+                }
+                for (int k = 0; k < 64; ++k) {
+                    BsdfSample s;
+                    Vec2 u = v2(numbers[k & 3], numbers[k >> 2 & 3]);
+                    if (!sheen_bsdf_sample(&b, ends[o], numbers[k >> 4], u, &s)) continue;
+                    assert_true(v3_finite(s.wi_l) && rgb_finite(s.weight) && s.pdf > 0 && !isnan(s.pdf));
+                }
+            }
+            sheen_bsdf_roughen(&b, 0.2f);
+        }
+        sheen_scene_destroy(&scene);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -400,6 +456,7 @@ int main(void)
         cmocka_unit_test(test_parts_make_the_whole),         cmocka_unit_test(test_white_plastic_is_white),
         cmocka_unit_test(test_rough_plastic_becomes_smooth), cmocka_unit_test(test_roughening),
         cmocka_unit_test(test_simplest_relatives),           cmocka_unit_test(test_delta_lobes_of_mixtures),
+        cmocka_unit_test(test_extremes_stay_finite),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
