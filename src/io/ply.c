@@ -2,6 +2,7 @@
 // PLY meshes. Format: turk1994-ply.
 #include "io/mesh.h"
 #include "io/number.h"
+#include "io/polygon.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -39,6 +40,9 @@ typedef struct Reader {
     uint32_t n_elements, n_properties;
     uint32_t (*triangles)[3]; // from malloc
     uint32_t n_triangles, triangle_capacity;
+    uint32_t *face; // from malloc: the polygon that is being read, and its corners' places
+    Vec3 *corners;
+    uint32_t face_capacity, corner_capacity;
 } Reader;
 
 static SheenStatus fail_at(const Reader *r, const char *what)
@@ -273,25 +277,42 @@ static SheenStatus skip_list(Reader *r, const Property *p)
 
 // ---- elements ---------------------------------------------------------------------------------------------------
 
-static SheenStatus read_face(Reader *r, const Property *p, uint32_t n_vertices)
+/** Adds the polygon in r->face to the triangles. */
+static SheenStatus add_polygon(Reader *r, uint32_t n, const Vec3 p[])
 {
-    uint32_t n, fan[3] = {0, 0, 0};
+    if (n < 3) return SHEEN_OK; // points and edges
+    if (!sheen_reserve((void **)&r->triangles, &r->triangle_capacity, (uint64_t)r->n_triangles + n - 2,
+                       sizeof *r->triangles))
+        return no_memory(r);
+    uint32_t(*t)[3] = r->triangles + r->n_triangles;
+    r->n_triangles += n - 2;
+    if (n == 3) {
+        memcpy(t, r->face, sizeof *t);
+        return SHEEN_OK;
+    }
+    if (!sheen_reserve((void **)&r->corners, &r->corner_capacity, n, sizeof *r->corners)) return no_memory(r);
+    for (uint32_t i = 0; i < n; ++i) r->corners[i] = p[r->face[i]];
+    if (!sheen_polygon_cut(r->corners, n, t)) return no_memory(r);
+    for (uint32_t i = 0; i < n - 2; ++i)
+        for (int j = 0; j < 3; ++j) t[i][j] = r->face[t[i][j]];
+    return SHEEN_OK;
+}
+
+static SheenStatus read_face(Reader *r, const Property *p, const MeshData *mesh)
+{
+    uint32_t n = 0;
     SheenStatus s = read_count(r, p, &n);
+    if (!s && !sheen_reserve((void **)&r->face, &r->face_capacity, n, sizeof *r->face)) s = no_memory(r);
     for (uint32_t i = 0; !s && i < n; ++i) {
         double index;
         s = read_value(r, p->type, &index);
         if (s) return s;
-        if (!(index >= 0.0 && index < (double)n_vertices && index == floor(index)))
+        if (!(index >= 0.0 && index < (double)mesh->n_vertices && index == floor(index)))
             return sheen_fail(r->log, SHEEN_ERR_PARSE, "%s: vertex index %g is out of range: there are %u vertices",
-                              r->name, index, n_vertices);
-        fan[i < 2 ? i : 2] = (uint32_t)index;
-        if (i < 2) continue;
-        if (!sheen_reserve((void **)&r->triangles, &r->triangle_capacity, (uint64_t)r->n_triangles + 1, sizeof fan))
-            return no_memory(r);
-        memcpy(r->triangles[r->n_triangles++], fan, sizeof fan);
-        fan[1] = fan[2];
+                              r->name, index, mesh->n_vertices);
+        r->face[i] = (uint32_t)index;
     }
-    return s;
+    return s ? s : add_polygon(r, n, mesh->p);
 }
 
 static SheenStatus read_vertex(Reader *r, const Element *e, MeshData *out, uint32_t index)
@@ -323,7 +344,7 @@ static SheenStatus read_elements(Reader *r, MeshData *out)
             for (uint32_t j = 0; !s && j < e->n; ++j) {
                 const Property *p = &r->properties[e->first + j];
                 double ignored;
-                s = p->role == INDICES ? read_face(r, p, out->n_vertices)
+                s = p->role == INDICES ? read_face(r, p, out)
                     : p->list          ? skip_list(r, p)
                                        : read_value(r, p->type, &ignored);
             }
@@ -371,6 +392,8 @@ SheenStatus sheen_ply_parse(const char *data, size_t size, const char *name, She
     r->at = data, r->end = data + size, r->name = name, r->log = log;
     SheenStatus s = read_mesh(r, arena, out);
     free(r->triangles);
+    free(r->face);
+    free(r->corners);
     free(r);
     return s;
 }
