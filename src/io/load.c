@@ -3,11 +3,13 @@
 
 #include "io/file_path.h"
 #include "io/mitsuba.h"
+#include "io/obj_scene.h"
 
 SheenStatus sheen_scene_load(const char *path, const SheenLog *log, SheenScene **out)
 {
     *out = NULL;
     if (sheen_path_has_ending(path, ".xml")) return sheen_mitsuba_read(path, log, out);
-    return sheen_fail(log, SHEEN_ERR_UNSUPPORTED, "%s: not a scene file that can be read: the ending must be .xml",
-                      path);
+    if (sheen_path_has_ending(path, ".obj")) return sheen_obj_read(path, log, out);
+    return sheen_fail(log, SHEEN_ERR_UNSUPPORTED,
+                      "%s: not a scene file that can be read: the ending must be .xml or .obj", path);
 }

@@ -7,7 +7,8 @@
 #include "scene/scene.h"
 
 /**
- * Reads a scene file; the format follows the ending (.xml: Mitsuba 0.5, 0.6, 2 and 3).
+ * Reads a scene file; the format follows the ending (.xml: Mitsuba 0.5, 0.6, 2 and 3; .obj:
+ * Wavefront OBJ with its material libraries).
  * @param path  file name; other files are looked for beside the file that names them
  * @param log   one line for the first error, warnings for what is not supported and what stands in for it
  * @param out   owned by the caller, NULL on failure

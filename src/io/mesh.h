@@ -44,17 +44,19 @@ bool sheen_reserve(void **array, uint32_t *capacity, uint64_t needed, size_t ite
 // ---- readers ----------------------------------------------------------------------------------------------------
 
 /**
- * Reads Wavefront OBJ: v, vt, vn and f; everything else is skipped. Polygons become fans.
+ * Reads Wavefront OBJ: v, vt, vn and f; everything else is skipped. Polygons are cut (io/polygon.h).
  * @param name  stands for the file in messages
- * Errors: SHEEN_ERR_PARSE (`FILE:LINE: ...`: a missing number, an index out of range), SHEEN_ERR_NOMEM.
+ * Errors: SHEEN_ERR_PARSE (`FILE:LINE: ...`: a missing number, a vertex index out of range), SHEEN_ERR_NOMEM. Normals
+ * and texture coordinates that are not there are a warning.
  */
 SHEEN_NODISCARD SheenStatus sheen_obj_parse(const char *text, size_t size, const char *name, SheenArena *arena,
                                             const SheenLog *log, MeshData *out);
 
 /**
  * Reads PLY, ASCII or binary of either byte order: x y z, nx ny nz, (u v | s t | texture_u texture_v | texture_s
- * texture_t) of `vertex`, and vertex_indices or vertex_index of `face`; everything else is skipped.
- * Errors: SHEEN_ERR_PARSE (`FILE: ...`, with a line where there is one), SHEEN_ERR_NOMEM.
+ * texture_t) of `vertex`, and vertex_indices or vertex_index of `face`; everything else is skipped, vertex colours too.
+ * Polygons are cut (io/polygon.h). Errors: SHEEN_ERR_PARSE (`FILE: ...`, with a line where there is one),
+ * SHEEN_ERR_NOMEM.
  */
 SHEEN_NODISCARD SheenStatus sheen_ply_parse(const char *data, size_t size, const char *name, SheenArena *arena,
                                             const SheenLog *log, MeshData *out);

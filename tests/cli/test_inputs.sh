@@ -20,6 +20,16 @@ echo '<scene version="3.0.0"><shape type="sphere"></scene>' >tags.xml; bad tags.
 says '^sheen: tags.xml:1:[0-9]+: '
 head -c 4096 /dev/urandom >random.xml; bad random.xml
 cp "$SCENE" scene.nosuch; bad scene.nosuch
+head -c 4096 /dev/urandom >random.ply
+echo '<scene version="3.0.0"><shape type="ply"><string name="filename" value="random.ply"/></shape></scene>' >mesh.xml
+expect 1 render mesh.xml -o bad.exr; says '^sheen: random.ply:1: not a PLY file$'
+cp random.ply random.serialized; sed s/ply/serialized/g mesh.xml >serialized.xml
+expect 1 render serialized.xml -o bad.exr; says '^sheen: random.serialized: mesh 0: not a serialized mesh'
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n' >bad.obj; bad_obj() { expect 1 render bad.obj -o bad.exr; says "$1"; }
+bad_obj '^sheen: bad.obj:4: vertex index 4 is out of range: there are 3 so far$'
+printf 'mtllib bad.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >bad.obj
+printf 'newmtl a\nKd 1 red 0\n' >bad.mtl; bad_obj "^sheen: bad.mtl:2: 'Kd' needs finite numbers\$"
+rm bad.obj bad.mtl; bad bad.obj
 : >empty.exr; expect 1 info empty.exr; says '^sheen: empty.exr: '
 head -c 4096 /dev/urandom >random.exr; expect 1 info random.exr; says '^sheen: random.exr: '
 expect 1 info nosuch.png; says '^sheen: nosuch.png: '

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The OBJ reader and the numbers under it.
 #include "base/clock.h"
-#include "io/mesh.h"
 #include "io/number.h"
+#include "io/obj.h"
 #include "io_kit.h"
 
 static SheenStatus parse(Kit *k, const char *text, MeshData *m)
@@ -110,11 +110,51 @@ static void bad_lines_are_refused_with_their_number(void **state)
     refused(k, joined(k, square, "f 1 2 5\n"), "mesh.obj:5: vertex index 5 is out of range: there are 4");
     refused(k, joined(k, square, "f 1 2 0\n"), "mesh.obj:5: vertex index 0");
     refused(k, joined(k, square, "f -5 2 1\n"), "mesh.obj:5: vertex index -5");
-    refused(k, joined(k, square, "f 1/1 2/1 3/1\n"), "mesh.obj:5: texture index 1");
-    refused(k, joined(k, square, "f 1//2 2//1 3//1\n"), "mesh.obj:5: normal index 2");
     refused(k, joined(k, square, "f 1 2\n"), "mesh.obj:5: a face needs three vertices");
     refused(k, joined(k, square, "f 1 2 x\n"), "mesh.obj:5: expected a vertex index");
     refused(k, joined(k, square, "f 1 2 99999999999999999999\n"), "mesh.obj:5: expected a vertex index");
+}
+
+static void faces_do_without_normals_and_uv_that_are_not_there(void **state)
+{
+    Kit *k = *state;
+    MeshData m;
+    assert_int_equal(parse(k, joined(k, square, "f 1/1 2/1 3/1\nf 1/1 3/1 4/1\n"), &m), SHEEN_OK);
+    assert_int_equal(k->n_warnings, 1); // once a file
+    assert_non_null(strstr(k->warnings, "mesh.obj:5: texture index 1 is out of range"));
+    assert_null(m.uv);
+    assert_int_equal(m.n_vertices, 4);
+    assert_int_equal(parse(k, joined(k, square, "vn 0 0 1\nf 1//1 2//0 3//-2\n"), &m), SHEEN_OK);
+    kit_assert_v3(m.n[0], v3(0, 0, 1), 0.0f);
+    kit_assert_v3(m.n[1], v3(0, 0, 0), 0.0f); // left to the builder
+}
+
+static void parts_are_told(void **state)
+{
+    Kit *k = *state;
+    ObjFile f;
+    const char *more = "mtllib a b.mtl \nf 1 2 3\nusemtl red paint\r\ng one\nf 1 2 3 4\nusemtl blue\n"
+                       "usemtl red paint\ns 7\nf 1 2 3\ns off\ng\nf 1 2 3\n";
+    const char *text = joined(k, square, more);
+    assert_int_equal(sheen_obj_parse_parts(text, strlen(text), "mesh.obj", k->arena, &k->log, &f), SHEEN_OK);
+    assert_int_equal(f.n_libraries, 1);
+    assert_string_equal(f.libraries[0].names, "a b.mtl");
+    assert_int_equal(f.libraries[0].line, 5);
+    assert_int_equal(f.n_materials, 2);
+    assert_string_equal(f.materials[0], "red paint");
+    const ObjRun want[4] = {{0, 1, SHEEN_NONE, 0, 0}, {1, 2, 0, 0, 1}, {3, 1, 0, 7, 1}, {4, 1, 0, 0, 2}};
+    assert_int_equal(f.n_runs, 4);
+    assert_memory_equal(f.runs, want, sizeof want);
+    // Many names, collisions of their hashes included.
+    char *names = malloc(3000 * 40), *at = names;
+    assert_non_null(names);
+    at += sprintf(at, "%s", square);
+    for (int i = 0; i < 3000; ++i) at += sprintf(at, "usemtl m%d\nf 1 2 3\n", i % 1000);
+    assert_int_equal(sheen_obj_parse_parts(names, strlen(names), "mesh.obj", k->arena, &k->log, &f), SHEEN_OK);
+    free(names);
+    assert_int_equal(f.n_materials, 1000);
+    assert_int_equal(f.n_runs, 3000);
+    for (uint32_t i = 0; i < 3000; ++i) assert_int_equal(f.runs[i].material, i % 1000);
 }
 
 static void non_finite_vertices_are_read_as_such(void **state)
@@ -231,6 +271,8 @@ int main(void)
         KIT_TEST(equal_corners_are_shared_and_no_others),
         KIT_TEST(line_ends_comments_and_groups_do_not_matter),
         KIT_TEST(bad_lines_are_refused_with_their_number),
+        KIT_TEST(faces_do_without_normals_and_uv_that_are_not_there),
+        KIT_TEST(parts_are_told),
         KIT_TEST(non_finite_vertices_are_read_as_such),
         KIT_TEST(numbers_agree_with_the_library),
         KIT_TEST(odd_spellings_of_numbers),
