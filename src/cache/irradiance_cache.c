@@ -41,14 +41,27 @@ typedef struct Clamp {
     bool shrink;    // second pass
 } Clamp;
 
+// Whether the record's own radius is below what the picture resolves.
+static bool is_enlarged(const IrradianceRecord *r)
+{
+    return r->R_sure < r->R_min;
+}
+
+// Whether a record sees the world through a gap far narrower than a pixel: it knows nothing of what is around.
+static bool is_sliver(const IrradianceRecord *r)
+{
+    return r->R_sure <= 0.1f * r->R_min;
+}
+
 static void clamp_record(Clamp *c, uint32_t record)
 {
     IrradianceRecord *r = &c->cache->records[record];
     float d = v3_length(v3_sub(r->p, c->p));
+    if (!c->shrink && is_sliver(r)) return;
     if (c->shrink)
-        r->R = maxf(r->R_min, minf(r->R, c->limit + d));
+        r->R = is_enlarged(r) ? r->R : maxf(r->R_min, minf(r->R, c->limit + d));
     else
-        c->smallest = minf(c->smallest, r->R + d);
+        c->smallest = minf(c->smallest, (is_enlarged(r) ? r->R_min : r->R) + d);
 }
 
 // Visits all entries of the nodes near p. The first pass looks for records nearer than R: others bound nothing. The
@@ -74,10 +87,12 @@ static void clamp_visit(Clamp *c, uint32_t node, Vec3 lo, float side)
 
 static void clamp_neighbors(SheenIrradianceCache *cache, IrradianceRecord *r)
 {
-    Clamp c = {.cache = cache, .p = r->p, .R = r->R, .smallest = r->R};
+    float R = is_enlarged(r) ? r->R_min : r->R;
+    Clamp c = {.cache = cache, .p = r->p, .R = R, .smallest = R};
     clamp_visit(&c, 0, cache->octree->lo, cache->octree->side);
-    r->R = maxf(r->R_min, c.smallest);
-    c.limit = r->R;
+    c.limit = maxf(r->R_min, c.smallest);
+    if (is_sliver(r)) return;
+    if (!is_enlarged(r)) r->R = c.limit;
     c.shrink = true;
     clamp_visit(&c, 0, cache->octree->lo, cache->octree->side);
 }
@@ -102,14 +117,20 @@ SheenStatus sheen_irradiance_cache_insert(SheenIrradianceCache *c, const Irradia
 
 // The weight w - 1/a of a record, continuous where its influence ends. A record whose radius had to be enlarged to what
 // the picture resolves keeps its full weight within its own radius; in the ring beyond it a thousandth: that decides
-// only where no other record reaches. A contact's darkness would otherwise paint discs onto the open floor beside it.
-static float influence(const SheenIrradianceCache *c, const IrradianceRecord *r, float d2, float cos_n, bool *sure)
+// only where no other record reaches. A contact's darkness would otherwise
+// paint discs onto the open floor beside it.
+// @param cover  out: 2 for a record that reaches the point by itself, 1 where it was enlarged
+static float influence(const SheenIrradianceCache *c, const IrradianceRecord *r, float d2, float cos_n, unsigned *cover)
 {
     const float ring = 1e-3f;
     float least = 1.0f / c->accuracy, w = record_weight(r->R, d2, cos_n) - least;
-    float own = r->R_sure < r->R ? record_weight(r->R_sure, d2, cos_n) - least : w;
-    *sure = own > 0.0f;
-    return r->R_sure < r->R ? ring * minf(w, least) + maxf(own, 0.0f) : w;
+    if (!is_enlarged(r)) {
+        *cover = 2;
+        return w;
+    }
+    float own = record_weight(r->R_sure, d2, cos_n) - least;
+    *cover = own > 0.0f ? 2 : 1;
+    return ring * minf(w, least) + maxf(own, 0.0f);
 }
 
 // Takes a record when it serves the point. @param d2  squared distance, below the square of the record's reach
@@ -117,14 +138,14 @@ static void consider(const SheenIrradianceCache *c, uint32_t record, float d2, V
                      Contributors *out)
 {
     const IrradianceRecord *r = &c->records[record];
-    bool sure;
-    float w = influence(c, r, d2, v3_dot(n, r->n), &sure);
+    unsigned cover;
+    float w = influence(c, r, d2, v3_dot(n, r->n), &cover);
     if (!(w > 0.0f) || record_in_front(r, p, n, c->accuracy, slack) || out->n == SHEEN_CONTRIBUTORS_MAX) return;
     w = minf(w, weight_max);
     out->record[out->n] = record;
     out->weight[out->n++] = w;
     out->weight_sum += w;
-    out->sure += sure;
+    out->cover += cover;
 }
 
 // The records of a block that reach the point, the newest first.
@@ -142,7 +163,7 @@ static void consider_block(const SheenIrradianceCache *c, const OctreeBlock *b, 
 
 void sheen_irradiance_cache_find(const SheenIrradianceCache *c, Vec3 p, Vec3 n, float slack, Contributors *out)
 {
-    out->n = out->sure = 0;
+    out->n = out->cover = 0;
     out->weight_sum = 0.0f;
     const SheenOctree *t = c->octree;
     for (OctreeWalk walk = octree_walk(t); walk.node != SHEEN_OCTREE_END; octree_descend(t, &walk, p))

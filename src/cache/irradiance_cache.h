@@ -25,7 +25,8 @@ void sheen_irradiance_cache_destroy(SheenIrradianceCache **cache);
 
 /**
  * Stores a copy of the record. With neighbor clamping its radius first becomes at most R_j + distance of each record j,
- * and then those records' radii at most R + distance, none below its own R_min.
+ * and then those records' radii at most R + distance, none below its own R_min. Enlarged records (R_sure < R_min) count
+ * with R_min and keep their R; those whose own radius is below a tenth of R_min clamp nobody.
  * Source: krivanek2006-making-caching-practical sec. 5.2, with radii clamped to their minimum first: a contact's tiny
  * unclamped radius would otherwise push all its neighbors to their minimum too.
  */
@@ -38,7 +39,7 @@ typedef struct Contributors {
     uint32_t record[SHEEN_CONTRIBUTORS_MAX];
     float weight[SHEEN_CONTRIBUTORS_MAX]; // w - 1/a > 0: continuous where a record's influence ends
     float weight_sum;                     // 0 when no record covers the point
-    unsigned sure;                        // those that reach the point by their own radius, not only an enlarged one
+    unsigned cover;                       // two or more where the point needs no further record
 } Contributors;
 
 /**

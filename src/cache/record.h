@@ -10,7 +10,7 @@ typedef struct IrradianceRecord {
     Vec3 n;              // unit normal of the side that is lit
     float R;             // clamped harmonic mean distance, metres: the record reaches a R on a plane
     float R_min;         // the least R that later clamping may set
-    float R_sure;        // <= R: within it the record speaks for itself, farther only where no other record does
+    float R_sure;        // its own radius where that is below R_min: farther out it speaks where no other record does
     float error;         // relative standard error of E
     Rgb E;               // irradiance, W/m^2
     Vec3 translation[3]; // gradient of E for a shift of p, per channel, W/m^3; in the plane of n

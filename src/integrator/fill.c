@@ -10,7 +10,7 @@
 // The reach a R of a record on a plane, in pixels. Below the least nothing is seen, above the most one record's noise
 // would spread over a wide disc.
 static const float reach_min_px = 4.0f, reach_max_px = 25.0f;
-// The least radius within which a record has its full weight, in units of its enlarged one.
+// The least own radius of a record, in units of its enlarged one.
 static const float sure_min = 0.1f;
 // A gather spends more rays until the standard error of its irradiance is expected to be so small.
 static const float gather_error = 0.025f;
@@ -185,8 +185,7 @@ static void cover_task(void *user, size_t item, unsigned worker)
         const ShadingPoint *p = &w->points[w->open[i]];
         Contributors c;
         sheen_irradiance_cache_find(w->fill->cache, p->point.p, p->point.n, 0.0f, &c);
-        // A single record whose radius was enlarged may stand in a slit that the point is not in.
-        w->covered[i] = c.sure > 0 || c.n > 1 || w->made_at[w->open[i]];
+        w->covered[i] = c.cover > 1 || w->made_at[w->open[i]];
         if (w->covered[i]) continue;
         float most = reach_max_px * p->footprint;
         float radius = sheen_irradiance_cache_expect_radius(w->fill->cache, p->point.p);
