@@ -17,6 +17,7 @@ SHEEN = os.environ.get("SHEEN_BIN", os.path.join(ROOT, "build", "release", "bin"
 class Run:
     wall: float  # seconds
     user: float  # seconds of processor time in the program itself, all threads
+    memory: float = 0.0  # MiB, the most that was resident
     stats: dict = field(default_factory=dict)  # of sheen --stats
 
     @property
@@ -64,7 +65,7 @@ def measure(command, cwd=None):
     if process.returncode:
         words = output.decode(errors="replace").strip().splitlines()[-3:]
         fail(f"{os.path.basename(command[0])} failed with {process.returncode}: " + " / ".join(words))
-    return Run(time.perf_counter() - start, usage.ru_utime)
+    return Run(time.perf_counter() - start, usage.ru_utime, usage.ru_maxrss / 1024)
 
 
 def render(scene, picture, **options):
