@@ -6,7 +6,7 @@
 // So meshes with normals are given the vertex order that agrees with them, and meshes without take the side that the
 // mirrored order gives. A mirrored sphere is turned inside out, a mirrored disk is not.
 #include "image/whole_file.h"
-#include "io/mesh.h"
+#include "io/mesh_smooth.h"
 #include "io/mitsuba.h"
 #include "io/primitive.h"
 
@@ -89,13 +89,15 @@ static bool read_mesh_file(Mitsuba *m, SheenXml *e, MeshFormat format, SheenShap
     face_normals = sheen_mi_bool(m, e, "face_normals", face_normals);
     if (face_normals) mesh.n = NULL;
     sheen_mi_ignore(e, "collapse shape_index");
-    if (sheen_mi_child(e, "max_smooth_angle")) sheen_xml_info(m->log, e, "maxSmoothAngle is ignored");
-    bool smooth = !face_normals && !mesh.n; // Mitsuba then makes normals, after placing the mesh
+    // Normals are made after placing the mesh: where there are none, and anew where edges are told by their angle.
+    bool edges = sheen_mi_child(e, "max_smooth_angle") && !face_normals;
+    double max_angle = sheen_mi_float(m, e, "max_smooth_angle", 180.0) * (3.14159265358979323846 / 180.0);
+    bool smooth = !face_normals && !mesh.n;
     if (!place_mesh(m, e, &mesh, false, out)) return false;
-    if (smooth) {
-        if (!sheen_mesh_smooth(m->arena, &mesh)) return no_memory(m, e);
-        out->mesh = sheen_mesh_finish(&mesh);
-    }
+    if (edges ? !sheen_mesh_smooth_edges(m->arena, &mesh, NULL, (float)max_angle)
+              : smooth && !sheen_mesh_smooth(m->arena, &mesh))
+        return no_memory(m, e);
+    out->mesh = sheen_mesh_finish(&mesh);
     return true;
 }
 
@@ -181,11 +183,33 @@ static bool read_disk(Mitsuba *m, SheenXml *e, SheenShape *out)
     return true;
 }
 
+/** A tube from p0 to p1; a negative radius only turns the azimuth, as in Mitsuba. */
+static bool read_cylinder(Mitsuba *m, SheenXml *e, SheenShape *out)
+{
+    Vec3 p0 = sheen_mi_vector(m, e, "p0", v3(0, 0, 0)), p1 = sheen_mi_vector(m, e, "p1", v3(0, 0, 1));
+    float radius = (float)sheen_mi_float(m, e, "radius", 1.0);
+    Vec3 axis = v3_sub(p1, p0);
+    float length = v3_length(axis);
+    if (!(length > 0.0f && isfinite(length))) {
+        sheen_xml_warn(m->log, e, "a cylinder from a point to itself is left out");
+        return false;
+    }
+    Frame frame = frame_from_normal(v3_scale(axis, 1.0f / length));
+    MeshData mesh;
+    if (!sheen_primitive_tube(m->arena, &mesh)) return no_memory(m, e);
+    for (uint32_t i = 0; i < mesh.n_vertices; ++i) {
+        Vec3 p = mesh.p[i];
+        mesh.p[i] = v3_add(p0, frame_to_world(&frame, v3(radius * p.x, radius * p.y, length * p.z)));
+        mesh.n[i] = frame_to_world(&frame, v3_scale(mesh.n[i], radius < 0.0f ? -1.0f : 1.0f));
+    }
+    return place_mesh(m, e, &mesh, false, out);
+}
+
 // ---- all shapes -------------------------------------------------------------------------------------------------
 
 static const Plugin plugins[] = {
     {"obj", read_obj},       {"ply", read_ply},   {"rectangle", read_rectangle},   {"cube", read_cube},
-    {"sphere", read_sphere}, {"disk", read_disk}, {"serialized", read_serialized},
+    {"sphere", read_sphere}, {"disk", read_disk}, {"serialized", read_serialized}, {"cylinder", read_cylinder},
 };
 
 static void add_area_light(Mitsuba *m, SheenXml *emitter, uint32_t shape, bool in_group)

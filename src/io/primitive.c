@@ -72,3 +72,18 @@ bool sheen_primitive_sphere(SheenArena *arena, MeshData *out)
         }
     return true;
 }
+
+bool sheen_primitive_tube(SheenArena *arena, MeshData *out)
+{
+    enum { AROUND = 256 };
+    *out = (MeshData){.n_vertices = 2 * (AROUND + 1), .n_triangles = 2 * AROUND};
+    if (!sheen_mesh_alloc(arena, out, true, true)) return false;
+    for (uint32_t i = 0; i < out->n_vertices; ++i) {
+        float u = (float)(i / 2) / AROUND, v = (float)(i % 2);
+        out->n[i] = v3(cosf(2.0f * SHEEN_PI * u), sinf(2.0f * SHEEN_PI * u), 0.0f);
+        out->p[i] = v3(out->n[i].x, out->n[i].y, v);
+        out->uv[i] = v2(u, 1.0f - v);
+    }
+    for (uint32_t i = 0; i < AROUND; ++i) put_quad(&out->triangles[2 * i], 2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1);
+    return true;
+}

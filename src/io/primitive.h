@@ -11,5 +11,7 @@ bool sheen_primitive_rectangle(SheenArena *arena, MeshData *out);
 bool sheen_primitive_cube(SheenArena *arena, MeshData *out);
 /** The unit sphere, facing outward, finely tessellated. */
 bool sheen_primitive_sphere(SheenArena *arena, MeshData *out);
+/** The tube x^2 + y^2 = 1, 0 <= z <= 1, without lids, facing outward, finely tessellated. */
+bool sheen_primitive_tube(SheenArena *arena, MeshData *out);
 
 #endif

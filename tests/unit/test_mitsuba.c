@@ -201,6 +201,92 @@ static void meshes_keep_their_texture_orientation(void **state)
     assert_float_equal(s->shapes[2].mesh.uv[0].y, 0.8f, EPS);
 }
 
+/** The places, normals and uv that Mitsuba 3 gives for the same shapes; our v runs upward. */
+static void cylinders(void **state)
+{
+    Kit *k = *state;
+    static const struct {
+        const char *more;
+        Vec3 lo, hi;
+        float out; // 1 when the front is outside
+    } cases[] = {
+        {"", {0.5f, 2, 2.5f}, {1.5f, 4, 3.5f}, 1},
+        {"<boolean name=\"flip_normals\" value=\"true\"/>", {0.5f, 2, 2.5f}, {1.5f, 4, 3.5f}, -1},
+        {"<transform name=\"toWorld\"><scale x=\"-1\"/></transform>", {-1.5f, 2, 2.5f}, {-0.5f, 4, 3.5f}, 1},
+        {"<boolean name=\"flipNormals\" value=\"true\"/><transform name=\"to_world\"><scale x=\"-1\"/></transform>",
+         {-1.5f, 2, 2.5f},
+         {-0.5f, 4, 3.5f},
+         -1},
+        {"<transform name=\"to_world\"><scale y=\"3\"/></transform>", {0.5f, 6, 2.5f}, {1.5f, 12, 3.5f}, 1},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i)
+        for (int sign = -1; sign <= 1; sign += 2) {
+            char body[512];
+            snprintf(body, sizeof body,
+                     "<shape type=\"cylinder\"><point name=\"p0\" x=\"1\" y=\"2\" z=\"3\"/><point name=\"p1\" "
+                     "x=\"1\" y=\"4\" z=\"3\"/><float name=\"radius\" value=\"%g\"/>%s</shape>",
+                     0.5 * sign, cases[i].more);
+            const SheenScene *s = kit_scene(k, body);
+            const SheenMesh *m = &s->shapes[0].mesh;
+            // 256 sides touch the circle at its corners, among them those on the axes.
+            kit_assert_v3(s->bounds.lo, cases[i].lo, 1e-5f);
+            kit_assert_v3(s->bounds.hi, cases[i].hi, 1e-5f);
+            Vec3 center = bounds_center(&s->bounds);
+            for (uint32_t t = 0; t < m->n_triangles; ++t) {
+                Vec3 a = m->p[m->triangles[t][0]], b = m->p[m->triangles[t][1]], c = m->p[m->triangles[t][2]];
+                Vec3 face = v3_cross(v3_sub(b, a), v3_sub(c, a)), from = v3_sub(a, center);
+                from.y = 0.0f;
+                assert_true(v3_dot(face, from) * cases[i].out > 0.0f);
+                assert_true(v3_dot(m->n[m->triangles[t][0]], from) * cases[i].out > 0.0f);
+            }
+        }
+    const SheenScene *s = kit_scene(k, "<shape type=\"cylinder\"/>");
+    const SheenMesh *m = &s->shapes[0].mesh;
+    for (uint32_t i = 0; i < m->n_vertices; ++i) {
+        float phi = 2.0f * SHEEN_PI * m->uv[i].x;
+        kit_assert_v3(m->p[i], v3(cosf(phi), sinf(phi), 1.0f - m->uv[i].y), 1e-6f);
+    }
+    kit_scene(k, "<shape type=\"cylinder\"><point name=\"p1\" value=\"0,0,0\"/></shape>");
+    assert_non_null(strstr(k->warnings, "scene.xml:2:1: a cylinder from a point to itself is left out"));
+}
+
+/** A roof whose sides meet at a right angle, with wrong normals that maxSmoothAngle discards. */
+static void normals_by_the_largest_smooth_angle(void **state)
+{
+    Kit *k = *state;
+    kit_write(k, "roof.obj",
+              "v -1 0 0\nv -1 1 0\nv 0 0 1\nv 0 1 1\nv 1 0 0\nv 1 1 0\nvn 0 1 0\n"
+              "f 1//1 3//1 4//1 2//1\nf 3//1 5//1 6//1 4//1\n");
+#define ROOF(more) "<shape type=\"obj\"><string name=\"filename\" value=\"roof.obj\"/>" more "</shape>"
+    const SheenMesh *m = &kit_scene(k, ROOF("<float name=\"maxSmoothAngle\" value=\"89\"/>"))->shapes[0].mesh;
+    assert_int_equal(k->n_warnings, 2); // no light, no camera
+    assert_int_equal(m->n_vertices, 8);
+    for (uint32_t i = 0; i < 8; ++i) assert_true(fabsf(m->n[i].y) < 1e-6f && fabsf(m->n[i].z - 0.7071068f) < 1e-6f);
+    m = &kit_scene(k, ROOF("<float name=\"max_smooth_angle\" value=\"91\"/>"))->shapes[0].mesh;
+    assert_int_equal(m->n_vertices, 6);
+    uint32_t n_up = 0;
+    for (uint32_t i = 0; i < 6; ++i) n_up += fabsf(m->n[i].z - 1.0f) < 1e-6f;
+    assert_int_equal(n_up, 2); // on the ridge
+    m = &kit_scene(k, ROOF("<float name=\"maxSmoothAngle\" value=\"89\"/>"
+                           "<boolean name=\"faceNormals\" value=\"true\"/>"))
+             ->shapes[0]
+             .mesh;
+    assert_null(m->n);
+}
+
+static void shapes_that_are_not_there_are_named(void **state)
+{
+    Kit *k = *state;
+    static const char *const names[] = {"heightfield", "hair", "bsplinecurve", "sdfgrid", "subdivision"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; ++i) {
+        char body[128], want[128];
+        snprintf(body, sizeof body, "\n<shape type=\"cube\"/><shape type=\"%s\"/>", names[i]);
+        snprintf(want, sizeof want, "scene.xml:3:21: the shape '%s' is not supported and is left out", names[i]);
+        assert_int_equal(kit_scene(k, body)->n_shapes, 1);
+        assert_non_null(strstr(k->warnings, want));
+    }
+}
+
 static void shape_groups_and_instances(void **state)
 {
     Kit *k = *state;
@@ -764,6 +850,9 @@ int main(void)
         KIT_TEST(spheres_and_disks),
         KIT_TEST(an_ellipsoid_becomes_triangles),
         KIT_TEST(meshes_keep_their_texture_orientation),
+        KIT_TEST(cylinders),
+        KIT_TEST(normals_by_the_largest_smooth_angle),
+        KIT_TEST(shapes_that_are_not_there_are_named),
         KIT_TEST(shape_groups_and_instances),
         KIT_TEST(supported_materials),
         KIT_TEST(stand_ins_are_named_once),
