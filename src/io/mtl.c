@@ -20,7 +20,7 @@ typedef struct Reader {
     SheenArena *arena;
     uint32_t line, n, capacity;
     MtlMaterial *materials; // from malloc
-    bool warned;
+    bool warned, of_blender;
 } Reader;
 
 static SheenStatus no_memory(const Reader *r)
@@ -195,7 +195,10 @@ static SheenStatus begin_material(Reader *r)
                      .filter = rgb_gray(1.0f),
                      .ior = 1.0f,
                      .opacity = 1.0f,
-                     .illum = 2};
+                     .roughness = -1.0f,
+                     .metallic = -1.0f,
+                     .illum = 2,
+                     .of_blender = r->of_blender};
     if (!m.name || !sheen_reserve((void **)&r->materials, &r->capacity, (uint64_t)r->n + 1, sizeof m))
         return no_memory(r);
     r->materials[r->n++] = m;
@@ -223,7 +226,12 @@ static SheenStatus read_property(Reader *r, Word w, MtlMaterial *m)
     if (is(w, "Ks")) return read_color(r, "Ks", &m->specular);
     if (is(w, "Ka")) return read_color(r, "Ka", &m->ambient);
     if (is(w, "Ke")) return read_color(r, "Ke", &m->emission);
-    if (is(w, "Tf")) return read_color(r, "Tf", &m->filter);
+    if (is(w, "Tf")) {
+        m->has_filter = true;
+        return read_color(r, "Tf", &m->filter);
+    }
+    if (is(w, "Pr")) return read_number(r, "Pr", &m->roughness);
+    if (is(w, "Pm")) return read_number(r, "Pm", &m->metallic);
     if (is(w, "Ns")) return read_number(r, "Ns", &m->shininess);
     if (is(w, "Ni")) return read_number(r, "Ni", &m->ior);
     if (is(w, "d")) return read_opacity(r, m, false);
@@ -239,14 +247,18 @@ static SheenStatus read_property(Reader *r, Word w, MtlMaterial *m)
 
 static SheenStatus read_statement(Reader *r)
 {
-    static const char *const read[] = {"Kd", "Ks", "Ka", "Ke", "Tf", "Ns", "Ni", "d", "Tr", "illum", "map_Kd", "map_d"};
-    // What diffuse light hardly shows, and what programs write beside it.
-    static const char *const silent[] = {"map_Ka",  "map_Ks",  "map_Ns",  "map_aat", "sharpness", "Km",
-                                         "Kt",      "Pr",      "Pm",      "Ps",      "Pc",        "Pcr",
-                                         "aniso",   "anisor",  "map_Pr",  "map_Pm",  "map_Ps",    "map_Pc",
-                                         "map_Pcr", "map_RMA", "map_ORM", "refl",    "map_refl"};
+    static const char *const read[] = {"Kd", "Ks", "Ka", "Ke", "Tf",    "Ns",     "Ni",
+                                       "d",  "Tr", "Pr", "Pm", "illum", "map_Kd", "map_d"};
+    // What pictures hardly show, and what programs write beside it.
+    static const char *const silent[] = {"map_Ka", "map_Ks", "map_Ns",  "map_aat", "sharpness", "Km",     "Kt",
+                                         "Ps",     "Pc",     "Pcr",     "aniso",   "anisor",    "map_Pr", "map_Pm",
+                                         "map_Ps", "map_Pc", "map_Pcr", "map_RMA", "map_ORM",   "refl",   "map_refl"};
     Word w = next_word(r);
-    if (w.length == 0 || *w.text == '#') return SHEEN_OK;
+    if (w.length == 0) return SHEEN_OK;
+    if (*w.text == '#') { // "# Blender 4.2.0 MTL File: ..."
+        r->of_blender = r->of_blender || (r->line == 1 && is(next_word(r), "Blender"));
+        return SHEEN_OK;
+    }
     if (is(w, "newmtl")) return begin_material(r);
     if (is_one_of(w, read, sizeof read / sizeof *read)) {
         if (r->n == 0)

@@ -30,8 +30,12 @@ typedef struct MtlMaterial {
     float shininess;     // Ns
     float ior;           // Ni
     float opacity;       // d, or 1 - Tr
+    float roughness;     // Pr, negative when not given
+    float metallic;      // Pm, negative when not given
     int illum;           // 2 when not given
     bool has_opacity;    // by d, which counts more than Tr
+    bool has_filter;
+    bool of_blender; // the library says that Blender wrote it
     MtlMap diffuse_map, opacity_map;
 } MtlMaterial;
 

@@ -21,6 +21,8 @@ MtlMaterial sheen_mtl_default(const char *name)
                          .filter = rgb_gray(1.0f),
                          .ior = 1.0f,
                          .opacity = 1.0f,
+                         .roughness = -1.0f,
+                         .metallic = -1.0f,
                          .illum = 2};
 }
 
@@ -39,7 +41,7 @@ static const char *find_picture(const MtlReader *r, const MtlMaterial *m, const 
 }
 
 /** Bytes stay bytes when the factor is the same for all channels: it goes into the table. */
-static SheenStatus read_bytes(const MtlReader *r, const char *path, Rgb factor, SheenBitmap *out)
+static SheenStatus read_bytes(const MtlReader *r, const char *path, Rgb factor, bool raw, SheenBitmap *out)
 {
     uint8_t *pixels;
     SheenStatus s = sheen_image_read_bytes(path, r->log, &out->width, &out->height, &pixels);
@@ -50,7 +52,10 @@ static SheenStatus read_bytes(const MtlReader *r, const char *path, Rgb factor, 
     if (copy) memcpy(copy, pixels, size);
     free(pixels);
     if (!copy || !table) return SHEEN_ERR_NOMEM;
-    for (int i = 0; i < 256; ++i) table[i] = factor.r * sheen_srgb_decode((float)i / 255.0f);
+    for (int i = 0; i < 256; ++i) {
+        float x = (float)i / 255.0f;
+        table[i] = factor.r * (raw ? x : sheen_srgb_decode(x));
+    }
     out->bytes = copy;
     out->decode = table;
     return SHEEN_OK;
@@ -69,32 +74,48 @@ static SheenStatus read_floats(const MtlReader *r, const char *path, Rgb factor,
     return copy ? SHEEN_OK : SHEEN_ERR_NOMEM;
 }
 
-/** Reads a picture, once for all materials that show it alike. `out` is NULL when there is none to be read. */
-static SheenStatus read_picture(MtlReader *r, const MtlMaterial *m, const char *file, Rgb factor,
+/** Reads a picture, once for all materials that show it alike. `out` is NULL when there is none to be read.
+ *  @param raw  numbers, not colours: bytes are linear */
+static SheenStatus read_picture(MtlReader *r, const MtlMaterial *m, const char *file, Rgb factor, bool raw,
                                 const SheenBitmap **out)
 {
     *out = NULL;
     const char *path = find_picture(r, m, file);
     if (!path) {
-        sheen_warn(r->log, "%s:%u: cannot open the picture '%s': the material's colour stands in", m->library, m->line,
-                   file);
+        sheen_warn(r->log, "%s:%u: cannot open the picture '%s': the material does without", m->library, m->line, file);
         return SHEEN_OK;
     }
     for (const MtlPicture *p = r->pictures; p; p = p->next)
-        if (strcmp(p->path, path) == 0 && p->factor.r == factor.r && p->factor.g == factor.g &&
-            p->factor.b == factor.b) {
+        if (strcmp(p->path, path) == 0 && p->raw == raw && memcmp(&p->factor, &factor, sizeof factor) == 0) {
             *out = &p->bitmap;
             return SHEEN_OK;
         }
     MtlPicture *p = SHEEN_ARENA_NEW(r->scratch, MtlPicture, 1);
     if (!p) return no_memory(r);
-    *p = (MtlPicture){.path = path, .factor = factor, .next = r->pictures};
+    *p = (MtlPicture){.path = path, .factor = factor, .raw = raw, .next = r->pictures};
     bool bytes = sheen_image_is_8bit(path) && factor.r == factor.g && factor.g == factor.b;
-    SheenStatus s = bytes ? read_bytes(r, path, factor, &p->bitmap) : read_floats(r, path, factor, &p->bitmap);
+    SheenStatus s = bytes ? read_bytes(r, path, factor, raw, &p->bitmap) : read_floats(r, path, factor, &p->bitmap);
     if (s == SHEEN_ERR_NOMEM) return no_memory(r);
     if (s) return s; // the reader has reported the file
     r->pictures = p;
     *out = &p->bitmap;
+    return SHEEN_OK;
+}
+
+/** A picture times a factor, the factor alone where there is none. */
+static SheenStatus read_texture(MtlReader *r, const MtlMaterial *m, const MtlMap *map, Rgb factor, bool raw,
+                                SheenTexture *out)
+{
+    *out = sheen_texture_constant(factor);
+    if (!map->file) return SHEEN_OK;
+    const SheenBitmap *bitmap;
+    SheenStatus s = read_picture(r, m, map->file, factor, raw, &bitmap);
+    if (s || !bitmap) return s;
+    out->kind = SHEEN_TEXTURE_BITMAP;
+    out->bitmap = *bitmap;
+    out->wrap = map->clamp ? SHEEN_WRAP_CLAMP : SHEEN_WRAP_REPEAT;
+    const float uv[2][3] = {{map->scale.x, 0.0f, map->offset.x}, {0.0f, map->scale.y, map->offset.y}};
+    memcpy(out->uv, uv, sizeof uv);
     return SHEEN_OK;
 }
 
@@ -105,30 +126,28 @@ static Rgb clamp_color(Rgb c)
     return rgb(clampf(c.r, 0.0f, 1.0f), clampf(c.g, 0.0f, 1.0f), clampf(c.b, 0.0f, 1.0f));
 }
 
-static SheenStatus read_diffuse(MtlReader *r, const MtlMaterial *m, SheenTexture *out)
+/** Kd times `scale`. Some exporters leave it black where a map gives the colour. */
+static SheenStatus read_diffuse(MtlReader *r, const MtlMaterial *m, float scale, SheenTexture *out)
 {
     Rgb color = clamp_color(m->diffuse);
-    *out = sheen_texture_constant(color);
-    const MtlMap *map = &m->diffuse_map;
-    if (!map->file) return SHEEN_OK;
-    const SheenBitmap *bitmap;
-    // Some exporters leave Kd black where a map gives the colour.
-    SheenStatus s = read_picture(r, m, map->file, rgb_is_black(color) ? rgb_gray(1.0f) : color, &bitmap);
-    if (s || !bitmap) return s;
-    out->kind = SHEEN_TEXTURE_BITMAP;
-    out->bitmap = *bitmap;
-    out->wrap = map->clamp ? SHEEN_WRAP_CLAMP : SHEEN_WRAP_REPEAT;
-    const float uv[2][3] = {{map->scale.x, 0.0f, map->offset.x}, {0.0f, map->scale.y, map->offset.y}};
-    memcpy(out->uv, uv, sizeof uv);
-    return SHEEN_OK;
+    if (m->diffuse_map.file && rgb_is_black(color)) {
+        SheenStatus s = read_texture(r, m, &m->diffuse_map, rgb_gray(scale), false, out);
+        if (out->kind == SHEEN_TEXTURE_CONSTANT) out->value = color;
+        return s;
+    }
+    return read_texture(r, m, &m->diffuse_map, rgb_scale(color, scale), false, out);
 }
 
-/** Maya writes illum 4 for everything and 3ds Max an index for everything: each alone means nothing. */
-static bool lets_light_through(const MtlMaterial *m)
+/**
+ * Maya writes illum 4 for everything and 3ds Max an index for everything: each alone means nothing. Blender writes 9
+ * for what is cut out by its alpha, and Tf for what refracts.
+ */
+static bool is_glass(const MtlMaterial *m)
 {
+    if (m->of_blender) return m->has_filter && rgb_max(m->filter) > 0.5f;
     bool clear = m->opacity < 0.05f && !m->opacity_map.file;
-    return clear || m->illum == 6 || m->illum == 7 ||
-           ((m->illum == 4 || m->illum == 9) && m->ior > 1.0f && m->opacity < 1.0f);
+    bool index = (m->illum == 4 || m->illum == 9) && m->ior > 1.0f && m->opacity < 0.5f;
+    return clear || index || m->illum == 6 || m->illum == 7;
 }
 
 /** Only the hue of Tf is taken: its strength is a weight beside Ks and Kd of models without Fresnel's reflection. */
@@ -149,35 +168,89 @@ static void make_glass(const MtlMaterial *m, SheenMaterial *out)
         sheen_texture_constant(bends ? rgb(sqrtf(tint.r), sqrtf(tint.g), sqrtf(tint.b)) : tint);
 }
 
+static bool is_mirror(const MtlMaterial *m)
+{
+    return (m->illum == 3 || m->illum == 5) && rgb_max(m->specular) > rgb_max(m->diffuse);
+}
+
 static void make_mirror(const MtlMaterial *m, SheenMaterial *out)
 {
     out->kind = SHEEN_MATERIAL_CONDUCTOR;
-    out->two_sided = true;
     (void)sheen_metal_find("none", &out->eta, &out->k);
     out->specular_reflectance = sheen_texture_constant(clamp_color(m->specular));
 }
 
-SheenStatus sheen_mtl_convert(MtlReader *r, const MtlMaterial *m, SheenMaterial *out)
+/** Pr and Pm, or what Blender hides in Ns and, for metal, in Ka: roughness 1 - sqrt(Ns / 1000), metallic share Ka. */
+static SheenStatus make_principled(MtlReader *r, const MtlMaterial *m, SheenMaterial *out)
 {
-    *out = (SheenMaterial){.kind = SHEEN_MATERIAL_DIFFUSE,
-                           .reflectance = sheen_texture_constant(clamp_color(m->diffuse)),
-                           .specular_reflectance = sheen_texture_constant(rgb_gray(1.0f)),
-                           .specular_transmittance = sheen_texture_constant(rgb_gray(1.0f)),
-                           .ior = 1.0f,
-                           .name = sheen_arena_strdup(r->arena, m->name)};
-    if (!out->name) return no_memory(r);
-    if (lets_light_through(m)) {
+    SheenPrincipled *p = SHEEN_ARENA_NEW(r->arena, SheenPrincipled, 1);
+    if (!p) return no_memory(r);
+    SheenTexture *zero[] = {&p->anisotropic, &p->spec_trans, &p->spec_tint, &p->sheen,
+                            &p->sheen_tint,  &p->flatness,   &p->clearcoat, &p->clearcoat_gloss};
+    for (size_t i = 0; i < sizeof zero / sizeof *zero; ++i) *zero[i] = sheen_texture_constant(rgb_gray(0.0f));
+    bool metal = m->of_blender && (m->illum == 3 || m->illum == 6);
+    float metallic = m->metallic >= 0.0f ? m->metallic : metal ? m->ambient.r : 0.0f;
+    float roughness = m->roughness >= 0.0f ? m->roughness : 1.0f - sqrtf(clampf(m->shininess / 1000.0f, 0.0f, 1.0f));
+    p->metallic = sheen_texture_constant(rgb_gray(clampf(metallic, 0.0f, 1.0f)));
+    out->kind = SHEEN_MATERIAL_PRINCIPLED;
+    out->principled = p;
+    out->ior = 1.5f; // what Blender's specular level of 0.5 stands for
+    out->alpha_u = sheen_texture_constant(rgb_gray(clampf(roughness, 0.0f, 1.0f)));
+    return read_diffuse(r, m, 1.0f, &out->reflectance);
+}
+
+/** Both parts together reflect no more than all. */
+static SheenStatus make_phong(MtlReader *r, const MtlMaterial *m, SheenMaterial *out)
+{
+    Rgb specular = clamp_color(m->specular);
+    float sum = rgb_max(rgb_add(clamp_color(m->diffuse), specular)), scale = sum > 1.0f ? 0.99f / sum : 1.0f;
+    out->kind = SHEEN_MATERIAL_PHONG;
+    out->exponent = clampf(m->shininess, 0.0f, 1e5f);
+    out->specular_reflectance = sheen_texture_constant(rgb_scale(specular, scale));
+    return read_diffuse(r, m, scale, &out->reflectance);
+}
+
+/** The material without its opacity. */
+static SheenStatus make_opaque(MtlReader *r, const MtlMaterial *m, SheenMaterial *out)
+{
+    if (is_glass(m)) {
         make_glass(m, out);
         return SHEEN_OK;
     }
-    if ((m->illum == 3 || m->illum == 5) && rgb_max(m->specular) > rgb_max(m->diffuse)) {
+    out->two_sided = true;
+    if (m->of_blender || m->roughness >= 0.0f || m->metallic >= 0.0f) return make_principled(r, m, out);
+    if (is_mirror(m)) {
         make_mirror(m, out);
         return SHEEN_OK;
     }
-    out->two_sided = true;
-    if (m->opacity < 1.0f || m->opacity_map.file)
-        sheen_warn(r->log, "%s:%u: the material '%s' is partly transparent: an opaque one stands in", m->library,
-                   m->line, m->name);
-    r->n_highlights += !rgb_is_black(m->specular);
-    return read_diffuse(r, m, &out->reflectance);
+    if (m->illum >= 2 && m->shininess > 0.0f && !rgb_is_black(m->specular)) return make_phong(r, m, out);
+    return read_diffuse(r, m, 1.0f, &out->reflectance);
+}
+
+/** A map_d that is the colours' picture means its alpha, which is not read. */
+static bool is_cut_out(const MtlMaterial *m)
+{
+    bool map = m->opacity_map.file && !(m->diffuse_map.file && strcmp(m->opacity_map.file, m->diffuse_map.file) == 0);
+    return (m->opacity < 1.0f || map) && !is_glass(m);
+}
+
+SheenStatus sheen_mtl_add(MtlReader *r, const MtlMaterial *m, uint32_t *index)
+{
+    SheenMaterial material = {.kind = SHEEN_MATERIAL_DIFFUSE,
+                              .reflectance = sheen_texture_constant(rgb_gray(0.5f)),
+                              .specular_reflectance = sheen_texture_constant(rgb_gray(1.0f)),
+                              .specular_transmittance = sheen_texture_constant(rgb_gray(1.0f)),
+                              .ior = 1.0f,
+                              .name = sheen_arena_strdup(r->arena, m->name)};
+    if (!material.name) return no_memory(r);
+    SheenMaterial mask = material;
+    SheenStatus s = make_opaque(r, m, &material);
+    if (s) return s;
+    *index = sheen_builder_add_material(r->builder, &material);
+    if (!is_cut_out(m) || *index == SHEEN_NONE) return SHEEN_OK;
+    mask.kind = SHEEN_MATERIAL_MASK;
+    mask.nested[0] = *index;
+    s = read_texture(r, m, &m->opacity_map, rgb_gray(m->opacity), true, &mask.weight);
+    if (!s) *index = sheen_builder_add_material(r->builder, &mask);
+    return s;
 }

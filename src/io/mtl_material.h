@@ -4,38 +4,34 @@
 #define SHEEN_IO_MTL_MATERIAL_H
 
 #include "io/mtl.h"
-#include "scene/scene.h"
+#include "scene/builder.h"
 
 /** A picture that is in memory already. */
 typedef struct MtlPicture {
     const char *path;
     Rgb factor; // its values are multiplied by this
+    bool raw;   // bytes are linear
     SheenBitmap bitmap;
     struct MtlPicture *next;
 } MtlPicture;
 
 typedef struct MtlReader {
     const SheenLog *log;
+    SheenBuilder *builder;
     SheenArena *arena;   // of the scene
     SheenArena *scratch; // lives as long as the reader
     const char *scene;   // the OBJ file: pictures are looked for beside the library and beside it
     MtlPicture *pictures;
-    uint32_t n_highlights; // materials whose highlight is left out
 } MtlReader;
 
 /** What stands in for a material that is defined nowhere: diffuse 0.5. `name` is borrowed. */
 MtlMaterial sheen_mtl_default(const char *name);
 
 /**
- * @param out  a material for the builder; its name is in the arena of the scene
- * The format's models of light are mapped like this, in this order:
- * - a body that lets light through (illum 6 or 7; or 4, 9 or d below 0.05, with Ni above 1) is smooth glass of the
- *   index Ni; the hue of Tf tints light that went in and out again. Without Ni above 1 it is a pane that does not bend
- *   light;
- * - a mirror (illum 3 or 5 with Ks above Kd) is a metal that reflects Ks;
- * - anything else is diffuse: Kd, or map_Kd times Kd unless that is black. Both sides look alike.
- * Errors: SHEEN_ERR_NOMEM. A picture that cannot be read is a warning, and Kd stands in.
+ * Adds what a library's material means (docs/obj-scenes.md) to the builder.
+ * @param index  of the scene's material
+ * Errors: SHEEN_ERR_NOMEM, and those of pictures that are broken. One that is not there is a warning.
  */
-SHEEN_NODISCARD SheenStatus sheen_mtl_convert(MtlReader *r, const MtlMaterial *m, SheenMaterial *out);
+SHEEN_NODISCARD SheenStatus sheen_mtl_add(MtlReader *r, const MtlMaterial *m, uint32_t *index);
 
 #endif

@@ -129,19 +129,15 @@ static SheenStatus read_materials(Reader *r)
 /** Adds the materials that triangles use. */
 static SheenStatus add_materials(Reader *r)
 {
-    MtlReader reader = {.log = r->log, .arena = r->arena, .scratch = r->scratch, .scene = r->path};
+    MtlReader reader = {
+        .log = r->log, .builder = r->builder, .arena = r->arena, .scratch = r->scratch, .scene = r->path};
     for (uint32_t i = 0; i <= r->file.n_materials; ++i) r->indices[i] = SHEEN_NONE;
     for (uint32_t i = 0; i < r->file.n_runs; ++i) {
-        uint32_t *m =
-            &r->indices[r->file.runs[i].material == SHEEN_NONE ? r->file.n_materials : r->file.runs[i].material];
-        if (*m != SHEEN_NONE) continue;
-        SheenMaterial material;
-        SheenStatus s = sheen_mtl_convert(&reader, &r->materials[m - r->indices], &material);
+        uint32_t name = r->file.runs[i].material == SHEEN_NONE ? r->file.n_materials : r->file.runs[i].material;
+        if (r->indices[name] != SHEEN_NONE) continue;
+        SheenStatus s = sheen_mtl_add(&reader, &r->materials[name], &r->indices[name]);
         if (s) return s;
-        *m = sheen_builder_add_material(r->builder, &material);
     }
-    if (reader.n_highlights)
-        sheen_info(r->log, "%s: %u materials have a highlight (Ks) that is not shown", r->path, reader.n_highlights);
     return SHEEN_OK;
 }
 

@@ -37,6 +37,14 @@ static void broken_files_name_themselves(void **state)
               "property float z\nend_header\n0 0 0\n");
     kit_refused(k, "<shape type=\"ply\"><string name=\"filename\" value=\"bad.ply\"/></shape>", SHEEN_ERR_PARSE,
                 "bad.ply", "promises more");
+    kit_write_bytes(k, "bad.serialized", "\x1c\x04\x04\x00not packed", 14);
+    kit_refused(k, "<shape type=\"serialized\"><string name=\"filename\" value=\"bad.serialized\"/></shape>",
+                SHEEN_ERR_PARSE, "bad.serialized", "mesh 0: its compressed data is damaged");
+    kit_write(k, "bad.mtl", "newmtl a\nKd .5 .5 .5\nNs shiny\n");
+    kit_write(k, "room.obj", "mtllib bad.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+    assert_int_equal(kit_load(k, "room.obj"), SHEEN_ERR_PARSE);
+    assert_int_equal(k->n_errors, 1);
+    assert_non_null(strstr(k->error, "/bad.mtl:3: 'Ns' needs finite numbers"));
     kit_write(k, "bad.xml", "<scene version=\"3.0.0\">\n\n<shape></scene>");
     kit_refused(k, "<include filename=\"bad.xml\"/>", SHEEN_ERR_PARSE, "bad.xml:3:10", "mismatched tag");
     kit_write(k, "bad.png", "\x89PNG\r\n\x1a\n");

@@ -17,15 +17,21 @@ static const SheenScene *scene(Kit *k, const char *mtl, const char *obj)
     return k->scene;
 }
 
-/** The material of one that is described by `body`. */
-static const SheenMaterial *material(Kit *k, const char *body)
+/** The material that is described by `body`, below a first line. */
+static const SheenMaterial *material_of(Kit *k, const char *first, const char *body)
 {
     char mtl[1024];
-    snprintf(mtl, sizeof mtl, "newmtl a\n%s\n", body);
+    snprintf(mtl, sizeof mtl, "%snewmtl a\n%s\n", first, body);
     const SheenScene *s = scene(k, mtl, "usemtl a\nf 1/1 2/2 3/3\n");
-    assert_int_equal(s->n_materials, 1);
-    assert_string_equal(s->materials[0].name, "a");
-    return &s->materials[0];
+    const SheenMaterial *m = &s->materials[s->shapes[0].material];
+    assert_int_equal(s->n_materials, 1 + (m->kind == SHEEN_MATERIAL_MASK));
+    assert_string_equal(m->name, "a");
+    return m;
+}
+
+static const SheenMaterial *material(Kit *k, const char *body)
+{
+    return material_of(k, "", body);
 }
 
 static void parts_by_material_and_lamps_by_object(void **state)
@@ -63,7 +69,7 @@ static void a_scene_without_lamps_has_a_sky(void **state)
 static void materials_by_their_model_of_light(void **state)
 {
     Kit *k = *state;
-    const SheenMaterial *m = material(k, "Kd .2 .3 .4 # a comment\nKs .9 .9 .9\nNs 100\nNi 1.5\nd 1\nTr 0\nillum 2");
+    const SheenMaterial *m = material(k, "Kd .2 .3 .4 # a comment\nKs .9 .9 .9\nNs 100\nNi 1.5\nd 1\nTr 0\nillum 1");
     assert_int_equal(m->kind, SHEEN_MATERIAL_DIFFUSE);
     kit_assert_rgb(m->reflectance.value, rgb(0.2f, 0.3f, 0.4f), 1e-6f);
     m = material(k, "Kd .01 .01 .01\nKs .95 .9 .8\nillum 5");
@@ -91,6 +97,43 @@ static void materials_by_their_model_of_light(void **state)
     kit_assert_rgb(m->reflectance.value, rgb(1, 0, 0.5f), 0.0f);
     m = material(k, "Kd .25");
     kit_assert_rgb(m->reflectance.value, rgb_gray(0.25f), 0.0f);
+}
+
+static void highlights_are_phong_lobes(void **state)
+{
+    Kit *k = *state;
+    const SheenMaterial *m = material(k, "Kd .2 .3 .4\nKs .1 .2 .3\nNs 50");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_PHONG);
+    assert_true(m->two_sided && m->exponent == 50.0f);
+    kit_assert_rgb(m->reflectance.value, rgb(0.2f, 0.3f, 0.4f), 1e-6f);
+    kit_assert_rgb(m->specular_reflectance.value, rgb(0.1f, 0.2f, 0.3f), 1e-6f);
+    m = material(k, "Kd .8 .8 .8\nKs .8 .4 .8\nNs 9"); // more than all
+    kit_assert_rgb(m->reflectance.value, rgb_gray(0.495f), 1e-6f);
+    kit_assert_rgb(m->specular_reflectance.value, rgb(0.495f, 0.2475f, 0.495f), 1e-6f);
+    assert_int_equal(material(k, "Kd .2 .2 .2\nKs .5 .5 .5\nNs 0")->kind, SHEEN_MATERIAL_DIFFUSE);
+}
+
+static void blender_and_its_principled_materials(void **state)
+{
+    Kit *k = *state;
+    const char *blender = "# Blender 4.2.0 MTL File: 'None'\n";
+    const SheenMaterial *m =
+        material_of(k, blender, "Ns 250\nKa 1 1 1\nKd .1 .2 .3\nKs .5 .5 .5\nNi 1.45\nd 1\nillum 2");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_PRINCIPLED);
+    assert_float_equal(m->alpha_u.value.r, 0.5f, 1e-6f); // 250 = 1000 (1 - 0.5)^2
+    kit_assert_rgb(m->principled->metallic.value, rgb_gray(0), 0.0f);
+    kit_assert_rgb(m->reflectance.value, rgb(0.1f, 0.2f, 0.3f), 1e-6f);
+    m = material_of(k, blender, "Ns 1000\nKa .75 .75 .75\nKd .1 .2 .3\nKs .5 .5 .5\nillum 3");
+    kit_assert_rgb(m->principled->metallic.value, rgb_gray(0.75f), 0.0f);
+    assert_float_equal(m->alpha_u.value.r, 0.0f, 1e-6f);
+    m = material_of(k, blender, "Kd .1 .2 .3\nNi 1.45\nd .25\nillum 9");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_MASK);
+    m = material_of(k, blender, "Kd .1 .2 .3\nNi 1.45\nTf 1 1 1\nillum 6");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_DIELECTRIC);
+    m = material(k, "Kd .1 .2 .3\nPr 0.2\nPm 0.3");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_PRINCIPLED);
+    assert_float_equal(m->alpha_u.value.r, 0.2f, 1e-6f);
+    kit_assert_rgb(m->principled->metallic.value, rgb_gray(0.3f), 1e-6f);
 }
 
 /** A picture of one pixel, sRGB 188: about 0.5. */
@@ -121,6 +164,20 @@ static void pictures_are_multiplied_by_the_colour(void **state)
     m = material(k, "Kd .3 .3 .3\nmap_Kd no.png");
     assert_non_null(strstr(k->warnings, "room.mtl:1: cannot open the picture 'no.png'"));
     kit_assert_rgb(sheen_texture_eval(&m->reflectance, v2(0, 0)), rgb_gray(0.3f), 1e-6f);
+}
+
+static void what_is_partly_transparent_is_a_mask(void **state)
+{
+    Kit *k = *state;
+    write_pixel(k, "half.png");
+    const SheenMaterial *m = material(k, "Kd .1 .2 .3\nd 0.75\nTr 0.9");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_MASK);
+    kit_assert_rgb(m->weight.value, rgb_gray(0.75f), 0.0f);
+    kit_assert_rgb(k->scene->materials[m->nested[0]].reflectance.value, rgb(0.1f, 0.2f, 0.3f), 1e-6f);
+    m = material(k, "d 0.5\nmap_d half.png"); // bytes are the share, not a colour: 188 / 255
+    kit_assert_rgb(sheen_texture_eval(&m->weight, v2(0, 0)), rgb_gray(0.5f * 188.0f / 255.0f), 1e-5f);
+    m = material(k, "map_Kd half.png\nmap_d half.png"); // its alpha, which is not read
+    assert_int_equal(m->kind, SHEEN_MATERIAL_DIFFUSE);
 }
 
 static void libraries_are_looked_for(void **state)
@@ -230,6 +287,9 @@ int main(void)
         KIT_TEST(parts_by_material_and_lamps_by_object),
         KIT_TEST(a_scene_without_lamps_has_a_sky),
         KIT_TEST(materials_by_their_model_of_light),
+        KIT_TEST(highlights_are_phong_lobes),
+        KIT_TEST(blender_and_its_principled_materials),
+        KIT_TEST(what_is_partly_transparent_is_a_mask),
         KIT_TEST(pictures_are_multiplied_by_the_colour),
         KIT_TEST(libraries_are_looked_for),
         KIT_TEST(normals_follow_the_smoothing_groups),
