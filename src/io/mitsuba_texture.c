@@ -106,7 +106,12 @@ static SheenTexture read_bitmap(Mitsuba *m, const SheenXml *e)
     t.kind = SHEEN_TEXTURE_BITMAP;
     const char *filter = sheen_mi_string(m, e, "filter_type", "bilinear");
     t.nearest = sheen_mi_same(filter, "nearest");
+    // Version 0.6 may give a mode for each coordinate.
     const char *wrap = sheen_mi_string(m, e, "wrap_mode", "repeat");
+    wrap = sheen_mi_string(m, e, "wrap_mode_u", wrap);
+    const char *wrap_v = sheen_mi_string(m, e, "wrap_mode_v", wrap);
+    if (!sheen_mi_same(wrap, wrap_v))
+        sheen_xml_warn(m->log, e, "the wrap modes of u and v differ: that of u, '%s', stands in for both", wrap);
     if (sheen_mi_same(wrap, "mirror"))
         t.wrap = SHEEN_WRAP_MIRROR;
     else if (sheen_mi_same(wrap, "clamp"))
@@ -128,6 +133,42 @@ static SheenTexture read_checkerboard(Mitsuba *m, const SheenXml *e)
     return t;
 }
 
+/** Version 0.6's lines along the borders of the unit squares of uv; they lie the same with v turned round. */
+static SheenTexture read_grid(Mitsuba *m, const SheenXml *e)
+{
+    SheenTexture t = sheen_texture_constant(sheen_mi_color(m, e, "color0", MITSUBA_REFLECTANCE, rgb_gray(0.2f)));
+    t.kind = SHEEN_TEXTURE_GRID;
+    t.value2 = sheen_mi_color(m, e, "color1", MITSUBA_REFLECTANCE, rgb_gray(0.4f));
+    double width = sheen_mi_float(m, e, "line_width", 0.01);
+    if (!(width >= 0.0 && width <= 0.5))
+        sheen_mi_fail(m, SHEEN_ERR_PARSE, sheen_mi_child(e, "line_width"),
+                      "the lines of a grid must be 0 to 0.5 wide to each side, not %g", width);
+    t.line_width = (float)width;
+    read_uv_map(m, e, &t);
+    return t;
+}
+
+static SheenTexture read_texture(Mitsuba *m, SheenXml *e);
+
+/** Another texture times a factor. */
+static SheenTexture read_scale(Mitsuba *m, SheenXml *e)
+{
+    SheenXml *nested = sheen_mi_nested(m, e, "texture");
+    Rgb factor = sheen_mi_color(m, e, "scale", MITSUBA_REFLECTANCE, rgb_gray(1.0f));
+    SheenTexture t = sheen_texture_constant(rgb_gray(0.5f));
+    if (!nested) {
+        sheen_mi_fail(m, SHEEN_ERR_PARSE, e, "the texture 'scale' holds no texture");
+    } else if (nested->busy) {
+        sheen_mi_fail(m, SHEEN_ERR_PARSE, e, "the texture refers to itself");
+    } else {
+        nested->busy = true;
+        t = read_texture(m, nested);
+        nested->busy = false;
+    }
+    sheen_texture_scale(&t, factor);
+    return t;
+}
+
 static SheenTexture read_texture(Mitsuba *m, SheenXml *e)
 {
     const char *type = sheen_mi_type(e);
@@ -136,6 +177,10 @@ static SheenTexture read_texture(Mitsuba *m, SheenXml *e)
         t = read_bitmap(m, e);
     } else if (sheen_mi_same(type, "checkerboard")) {
         t = read_checkerboard(m, e);
+    } else if (sheen_mi_same(type, "gridtexture")) {
+        t = read_grid(m, e);
+    } else if (sheen_mi_same(type, "scale")) {
+        t = read_scale(m, e);
     } else {
         SheenXml *nested = sheen_mi_nested(m, e, "texture");
         if (!e->warned)
@@ -176,7 +221,8 @@ SheenTexture sheen_mi_texture_of(Mitsuba *m, SheenXml *value, Rgb otherwise)
     value->busy = true;
     SheenTexture t = read_texture(m, value);
     value->busy = false;
-    if (t.kind != SHEEN_TEXTURE_BITMAP) t.value = clamped(m, value, t.value), t.value2 = clamped(m, value, t.value2);
+    if (t.kind != SHEEN_TEXTURE_BITMAP) t.value = clamped(m, value, t.value);
+    if (sheen_texture_has_two_values(&t)) t.value2 = clamped(m, value, t.value2);
     return t;
 }
 

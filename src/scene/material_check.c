@@ -59,7 +59,7 @@ static void texture_in_range(const Check *c, const char *what, SheenTexture *t, 
 {
     if (t->kind == SHEEN_TEXTURE_BITMAP) return;
     Rgb *values[] = {&t->value, &t->value2};
-    for (int i = 0; i < (t->kind == SHEEN_TEXTURE_CHECKERBOARD ? 2 : 1); ++i) {
+    for (int i = 0; i < (sheen_texture_has_two_values(t) ? 2 : 1); ++i) {
         float x = rgb_luminance(*values[i]);
         // Rounding of the luminance alone is no mistake.
         if (!(x >= lo * (1.0f - 1e-5f) && x <= hi * (1.0f + 1e-5f)))
@@ -73,7 +73,9 @@ static bool same_texture(const SheenTexture *a, const SheenTexture *b)
     if (!same || a->kind == SHEEN_TEXTURE_CONSTANT) return same;
     for (int i = 0; i < 6; ++i) same = same && a->uv[i / 3][i % 3] == b->uv[i / 3][i % 3];
     return same && a->value2.g == b->value2.g && a->bitmap.bytes == b->bitmap.bytes &&
-           a->bitmap.floats == b->bitmap.floats && a->wrap == b->wrap && a->nearest == b->nearest;
+           a->bitmap.floats == b->bitmap.floats && a->wrap == b->wrap && a->nearest == b->nearest &&
+           a->line_width == b->line_width && a->scale.r == b->scale.r && a->scale.g == b->scale.g &&
+           a->scale.b == b->scale.b;
 }
 
 static bool is_zero(const SheenTexture *t)
@@ -137,7 +139,7 @@ static bool make_coat(SheenArena *arena, const SheenMaterial earlier[], uint32_t
 {
     float lo = SHEEN_ALPHA_MIN, hi = 1.0f; // of a bitmap
     if (m->alpha_u.kind != SHEEN_TEXTURE_BITMAP) lo = hi = rgb_luminance(m->alpha_u.value);
-    if (m->alpha_u.kind == SHEEN_TEXTURE_CHECKERBOARD) {
+    if (sheen_texture_has_two_values(&m->alpha_u)) {
         lo = minf(lo, rgb_luminance(m->alpha_u.value2));
         hi = maxf(hi, rgb_luminance(m->alpha_u.value2));
     }

@@ -5,7 +5,15 @@
 
 SheenTexture sheen_texture_constant(Rgb value)
 {
-    return (SheenTexture){.kind = SHEEN_TEXTURE_CONSTANT, .value = value, .uv = {{1, 0, 0}, {0, 1, 0}}};
+    return (SheenTexture){
+        .kind = SHEEN_TEXTURE_CONSTANT, .value = value, .scale = {1, 1, 1}, .uv = {{1, 0, 0}, {0, 1, 0}}};
+}
+
+void sheen_texture_scale(SheenTexture *t, Rgb factor)
+{
+    t->value = rgb_mul(t->value, factor);
+    t->value2 = rgb_mul(t->value2, factor);
+    t->scale = rgb_mul(t->scale, factor);
 }
 
 static Rgb texel(const SheenBitmap *b, uint32_t x, uint32_t y)
@@ -62,12 +70,20 @@ static Rgb eval_bitmap(const SheenTexture *t, float u, float v)
     return rgb_mad(sum, ax * ay, texel(b, x1, y1));
 }
 
+/** Whether a coordinate is near an integer. */
+static bool on_line(const SheenTexture *t, float x)
+{
+    x = fold(x, SHEEN_WRAP_REPEAT);
+    return minf(x, 1.0f - x) < t->line_width;
+}
+
 Rgb sheen_texture_eval(const SheenTexture *t, Vec2 uv)
 {
     if (t->kind == SHEEN_TEXTURE_CONSTANT) return t->value;
     float u = t->uv[0][0] * uv.x + t->uv[0][1] * uv.y + t->uv[0][2];
     float v = t->uv[1][0] * uv.x + t->uv[1][1] * uv.y + t->uv[1][2];
-    if (t->kind == SHEEN_TEXTURE_BITMAP) return eval_bitmap(t, u, v);
+    if (t->kind == SHEEN_TEXTURE_BITMAP) return rgb_mul(t->scale, eval_bitmap(t, u, v));
+    if (t->kind == SHEEN_TEXTURE_GRID) return on_line(t, u) || on_line(t, v) ? t->value2 : t->value;
     // Two by two fields in the unit square; the first colour where both halves are the same.
     bool right = fold(u, SHEEN_WRAP_REPEAT) > 0.5f, top = fold(v, SHEEN_WRAP_REPEAT) > 0.5f;
     return right == top ? t->value : t->value2;
@@ -83,8 +99,9 @@ Vec2 sheen_texture_gradient(const SheenTexture *t, Vec2 uv)
     float fx = floorf(x), fy = floorf(y), ax = x - fx, ay = y - fy;
     uint32_t x0 = wrap_index((int64_t)fx, b->width, t->wrap), x1 = wrap_index((int64_t)fx + 1, b->width, t->wrap);
     uint32_t y0 = wrap_index((int64_t)fy, b->height, t->wrap), y1 = wrap_index((int64_t)fy + 1, b->height, t->wrap);
-    float a = rgb_luminance(texel(b, x0, y0)), c = rgb_luminance(texel(b, x1, y0));
-    float d = rgb_luminance(texel(b, x0, y1)), e = rgb_luminance(texel(b, x1, y1));
+    Rgb k = t->scale;
+    float a = rgb_luminance(rgb_mul(k, texel(b, x0, y0))), c = rgb_luminance(rgb_mul(k, texel(b, x1, y0)));
+    float d = rgb_luminance(rgb_mul(k, texel(b, x0, y1))), e = rgb_luminance(rgb_mul(k, texel(b, x1, y1)));
     float du = lerpf(c - a, e - d, ay) * (float)b->width, dv = -lerpf(d - a, e - c, ax) * (float)b->height;
     if (t->wrap == SHEEN_WRAP_MIRROR) { // odd periods run backward
         if (fmodf(fabsf(floorf(u)), 2.0f) == 1.0f) du = -du;
@@ -112,9 +129,12 @@ Rgb sheen_texture_mean(const SheenTexture *t)
     case SHEEN_TEXTURE_CONSTANT:
         return t->value;
     case SHEEN_TEXTURE_BITMAP:
-        return mean_of_bitmap(&t->bitmap);
+        return rgb_mul(t->scale, mean_of_bitmap(&t->bitmap));
     case SHEEN_TEXTURE_CHECKERBOARD:
+        return rgb_scale(rgb_add(t->value, t->value2), 0.5f);
+    case SHEEN_TEXTURE_GRID:
         break;
     }
-    return rgb_scale(rgb_add(t->value, t->value2), 0.5f);
+    float side = maxf(1.0f - 2.0f * t->line_width, 0.0f), field = side * side;
+    return rgb_mad(rgb_scale(t->value2, 1.0f - field), field, t->value);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Textures: a constant, a bitmap or a checkerboard over uv.
+// Textures: a constant, a bitmap, a checkerboard or a grid over uv.
 #ifndef SHEEN_SCENE_TEXTURE_H
 #define SHEEN_SCENE_TEXTURE_H
 
@@ -18,22 +18,34 @@ typedef struct SheenBitmap {
 typedef enum SheenTextureKind {
     SHEEN_TEXTURE_CONSTANT,
     SHEEN_TEXTURE_BITMAP,
-    SHEEN_TEXTURE_CHECKERBOARD
+    SHEEN_TEXTURE_CHECKERBOARD,
+    SHEEN_TEXTURE_GRID // lines along the borders of the unit squares
 } SheenTextureKind;
 typedef enum SheenWrap { SHEEN_WRAP_REPEAT, SHEEN_WRAP_MIRROR, SHEEN_WRAP_CLAMP } SheenWrap;
 
 typedef struct SheenTexture {
     SheenTextureKind kind;
-    Rgb value;  // constant; first colour of the checkerboard
-    Rgb value2; // second colour of the checkerboard
+    Rgb value;  // constant; first colour of the checkerboard; between the lines of the grid
+    Rgb value2; // second colour of the checkerboard; of the grid's lines
+    Rgb scale;  // factor on a bitmap's colours
     SheenBitmap bitmap;
     SheenWrap wrap;
-    bool nearest;   // nearest texel instead of bilinear
-    float uv[2][3]; // uv' = uv[.][0..1] (u, v) + uv[.][2]
+    bool nearest;     // nearest texel instead of bilinear
+    float line_width; // grid: half the width of a line, in [0, 0.5]
+    float uv[2][3];   // uv' = uv[.][0..1] (u, v) + uv[.][2]
 } SheenTexture;
 
 /** A constant texture. */
 SheenTexture sheen_texture_constant(Rgb value);
+
+/** @return true for textures of two colours, `value` and `value2`. */
+static inline bool sheen_texture_has_two_values(const SheenTexture *t)
+{
+    return t->kind == SHEEN_TEXTURE_CHECKERBOARD || t->kind == SHEEN_TEXTURE_GRID;
+}
+
+/** Multiplies all that the texture gives. */
+void sheen_texture_scale(SheenTexture *t, Rgb factor);
 
 /**
  * @param uv  surface coordinates; v grows upward, so that (0, 0) is the lower left corner of a bitmap
@@ -43,11 +55,11 @@ Rgb sheen_texture_eval(const SheenTexture *t, Vec2 uv);
 
 /**
  * @return how the texture's luminance changes with u and v: the exact derivative of the bilinear interpolation; zero
- * for constants, checkerboards and `nearest`. Pure, thread-safe.
+ * for constants, checkerboards, grids and `nearest`. Pure, thread-safe.
  */
 Vec2 sheen_texture_gradient(const SheenTexture *t, Vec2 uv);
 
-/** @return the mean of the texture over the unit square of uv' (exact for constants and bitmaps). */
+/** @return the mean of the texture over the unit square of uv'. */
 Rgb sheen_texture_mean(const SheenTexture *t);
 
 #endif

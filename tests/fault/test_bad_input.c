@@ -142,6 +142,11 @@ static void mistyped_values(void **state)
          "focalLength"},
         {"<sensor type=\"perspective\"><transform name=\"to_world\"><scale x=\"0\"/></transform></sensor>",
          "scene.xml:2:1", "singular"},
+        {"<shape type=\"cube\"><bsdf type=\"diffuse\"><texture name=\"reflectance\" type=\"scale\"/></bsdf></shape>",
+         "scene.xml:2:41", "holds no texture"},
+        {"<shape type=\"cube\"><bsdf type=\"diffuse\"><texture name=\"reflectance\" type=\"gridtexture\"><float "
+         "name=\"line_width\" value=\"0.6\"/></texture></bsdf></shape>",
+         "scene.xml:2:88", "0 to 0.5 wide"},
         {"<default name=\"a\"/>", "scene.xml:2:1", "<default> needs"},
         {"<shape type=\"$kind\"/>", "scene.xml:2:1", "the parameter '$kind' is not defined"},
         {"<include/>", "scene.xml:2:1", "<include> needs"},

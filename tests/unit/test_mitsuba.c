@@ -678,6 +678,29 @@ static void checkerboards_lie_as_in_mitsuba(void **state)
     assert_float_equal(sheen_texture_eval(t, v2(0.2f, 0.9f)).r, 0.1f, 0.0f);
 }
 
+static void grids_and_scales(void **state)
+{
+    Kit *k = *state;
+#define GRID(name, width)                                                                                              \
+    "<bsdf type=\"diffuse\" id=\"m\"><texture type=\"scale\" name=\"reflectance\"><rgb name=\"scale\" "                \
+    "value=\"0.5, 0.5, 1\"/><texture type=\"" name "\"><rgb name=\"color0\" value=\"0.8\"/><float name=\"" width       \
+    "\" value=\"0.05\"/><float name=\"uscale\" value=\"2\"/></texture></texture></bsdf>"
+    const SheenTexture *t = &material(k, "0.5.0", GRID("gridtexture", "lineWidth"))->reflectance;
+    assert_int_equal(t->kind, SHEEN_TEXTURE_GRID);
+    kit_assert_rgb(sheen_texture_eval(t, v2(0.25f, 0.5f)), rgb(0.4f, 0.4f, 0.8f), 1e-6f);
+    kit_assert_rgb(sheen_texture_eval(t, v2(0.51f, 0.5f)), rgb(0.2f, 0.2f, 0.4f), 1e-6f); // color1 is 0.4
+    assert_int_equal(k->n_warnings, 2);                                                   // no light, no camera
+    material(k, "3.0.0", GRID("grid_texture", "line_width"));
+    assert_int_equal(k->n_warnings, 2);
+#undef GRID
+    t = &material(k, "0.6.0",
+                  "<bsdf type=\"diffuse\" id=\"m\"><texture type=\"scale\" name=\"reflectance\"><float name=\"scale\" "
+                  "value=\"3\"/><texture type=\"checkerboard\"/></texture></bsdf>")
+             ->reflectance;
+    kit_assert_rgb(sheen_texture_mean(t), rgb_gray(0.8f), 1e-6f); // 1.2 is clamped to 1, and 0.6
+    assert_non_null(strstr(k->warnings, "is outside [0, 1] and is clamped"));
+}
+
 static void pictures_are_read_once(void **state)
 {
     Kit *k = *state;
@@ -866,6 +889,7 @@ int main(void)
         KIT_TEST(lights_of_spectra),
         KIT_TEST(bitmaps_lie_as_in_mitsuba),
         KIT_TEST(checkerboards_lie_as_in_mitsuba),
+        KIT_TEST(grids_and_scales),
         KIT_TEST(pictures_are_read_once),
         KIT_TEST(byte_pictures_are_decoded),
         KIT_TEST(lights),

@@ -118,6 +118,41 @@ static void checkerboard_has_four_fields(void **state)
     assert_float_equal(sheen_texture_mean(&t).r, 2.0f, 0.0f);
 }
 
+static void grids_have_lines_along_the_unit_squares(void **state)
+{
+    (void)state;
+    SheenTexture t = sheen_texture_constant(rgb_gray(1));
+    t.kind = SHEEN_TEXTURE_GRID;
+    t.value2 = rgb_gray(3);
+    t.line_width = 0.1f;
+    assert_float_equal(at(&t, 0.5f, 0.5f), 1.0f, 0.0f);
+    assert_float_equal(at(&t, 0.05f, 0.5f), 3.0f, 0.0f);
+    assert_float_equal(at(&t, 0.95f, 0.5f), 3.0f, 0.0f);
+    assert_float_equal(at(&t, 0.5f, -0.05f), 3.0f, 0.0f);
+    assert_float_equal(at(&t, 0.5f, 7.15f), 1.0f, 0.0f);
+    assert_float_equal(sheen_texture_mean(&t).r, 0.64f * 1.0f + 0.36f * 3.0f, 1e-6f); // fields of 0.8 x 0.8
+}
+
+static void a_scale_multiplies_all_kinds(void **state)
+{
+    (void)state;
+    SheenTexture t = bitmap(SHEEN_WRAP_REPEAT, false);
+    Vec2 before = sheen_texture_gradient(&t, v2(0.5f, 0.5f));
+    sheen_texture_scale(&t, rgb_gray(0.5f));
+    sheen_texture_scale(&t, rgb_gray(0.5f));
+    assert_float_equal(at(&t, 0.25f, 0.25f), 0.75f, EPS);
+    assert_float_equal(sheen_texture_mean(&t).b, 0.625f, EPS);
+    Vec2 after = sheen_texture_gradient(&t, v2(0.5f, 0.5f));
+    assert_true(before.x != 0.0f);
+    assert_float_equal(after.x, 0.25f * before.x, 1e-5f);
+    t = sheen_texture_constant(rgb_gray(1));
+    t.kind = SHEEN_TEXTURE_CHECKERBOARD;
+    t.value2 = rgb_gray(3);
+    sheen_texture_scale(&t, rgb(1, 2, 3));
+    assert_float_equal(at(&t, 0.25f, 0.25f), 2.0f, 0.0f);
+    assert_float_equal(at(&t, 0.75f, 0.25f), 6.0f, 0.0f);
+}
+
 static void means_are_exact(void **state)
 {
     (void)state;
@@ -138,6 +173,8 @@ int main(void)
         cmocka_unit_test(bytes_go_through_their_table),
         cmocka_unit_test(uv_transform_comes_first),
         cmocka_unit_test(checkerboard_has_four_fields),
+        cmocka_unit_test(grids_have_lines_along_the_unit_squares),
+        cmocka_unit_test(a_scale_multiplies_all_kinds),
         cmocka_unit_test(means_are_exact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
