@@ -238,7 +238,8 @@ const Command command_render = {
     .operands = "SCENE -o FILE",
     .summary = "one picture of a scene file",
     .description =
-        "Renders a scene file (Mitsuba XML, versions 0.5 to 3) and writes the picture, in one or more formats.\n"
+        "Renders a scene file (Mitsuba XML, versions 0.5 to 3, or Wavefront OBJ with its material libraries) and "
+        "writes the picture, in one or more formats.\n"
         "The picture holds radiance in the scene's units and linear sRGB primaries; .exr files carry the options, the "
         "seed, the version and the scene's name as attributes. The same scene, options and seed give the same file, "
         "bit "

@@ -242,13 +242,14 @@ static SheenStatus read_property(Reader *r, Word w, MtlMaterial *m)
         return s;
     }
     if (is(w, "map_Kd")) return read_map(r, &m->diffuse_map);
-    return read_map(r, &m->opacity_map); // map_d
+    if (is(w, "map_d")) return read_map(r, &m->opacity_map);
+    return read_map(r, &m->normal_map);
 }
 
 static SheenStatus read_statement(Reader *r)
 {
-    static const char *const read[] = {"Kd", "Ks", "Ka", "Ke", "Tf",    "Ns",     "Ni",
-                                       "d",  "Tr", "Pr", "Pm", "illum", "map_Kd", "map_d"};
+    static const char *const read[] = {"Kd", "Ks", "Ka", "Ke",    "Tf",     "Ns",    "Ni",  "d",
+                                       "Tr", "Pr", "Pm", "illum", "map_Kd", "map_d", "norm"};
     // What pictures hardly show, and what programs write beside it.
     static const char *const silent[] = {"map_Ka", "map_Ks", "map_Ns",  "map_aat", "sharpness", "Km",     "Kt",
                                          "Ps",     "Pc",     "Pcr",     "aniso",   "anisor",    "map_Pr", "map_Pm",
@@ -260,7 +261,8 @@ static SheenStatus read_statement(Reader *r)
         return SHEEN_OK;
     }
     if (is(w, "newmtl")) return begin_material(r);
-    if (is_one_of(w, read, sizeof read / sizeof *read)) {
+    bool normals = is(w, "map_Bump") && r->of_blender;
+    if (normals || is_one_of(w, read, sizeof read / sizeof *read)) {
         if (r->n == 0)
             return sheen_fail(r->log, SHEEN_ERR_PARSE, "%s:%u: '%.*s' stands before the first 'newmtl'", r->name,
                               r->line, (int)w.length, w.text);

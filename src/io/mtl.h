@@ -37,6 +37,7 @@ typedef struct MtlMaterial {
     bool has_filter;
     bool of_blender; // the library says that Blender wrote it
     MtlMap diffuse_map, opacity_map;
+    MtlMap normal_map; // norm; of Blender map_Bump, which is its name for normals
 } MtlMaterial;
 
 typedef struct MtlLibrary {

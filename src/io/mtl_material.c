@@ -234,6 +234,29 @@ static bool is_cut_out(const MtlMaterial *m)
     return (m->opacity < 1.0f || map) && !is_glass(m);
 }
 
+/** Puts the material *index under its opacity. */
+static SheenStatus add_mask(MtlReader *r, const MtlMaterial *m, SheenMaterial *mask, uint32_t *index)
+{
+    if (*index == SHEEN_NONE) return SHEEN_OK; // the builder remembers the failure
+    mask->kind = SHEEN_MATERIAL_MASK;
+    mask->nested[0] = *index;
+    SheenStatus s = read_texture(r, m, &m->opacity_map, rgb_gray(m->opacity), true, &mask->weight);
+    if (!s) *index = sheen_builder_add_material(r->builder, mask);
+    return s;
+}
+
+/** Gives the material *index the normals of a picture. */
+static SheenStatus add_normals(MtlReader *r, const MtlMaterial *m, SheenMaterial *normals, uint32_t *index)
+{
+    normals->kind = SHEEN_MATERIAL_NORMAL;
+    normals->nested[0] = *index;
+    normals->turn_normals = normals->shadow_normals = true;
+    SheenStatus s = read_texture(r, m, &m->normal_map, rgb_gray(1.0f), true, &normals->map);
+    if (s || normals->map.kind == SHEEN_TEXTURE_CONSTANT || *index == SHEEN_NONE) return s;
+    *index = sheen_builder_add_material(r->builder, normals);
+    return SHEEN_OK;
+}
+
 SheenStatus sheen_mtl_add(MtlReader *r, const MtlMaterial *m, uint32_t *index)
 {
     SheenMaterial material = {.kind = SHEEN_MATERIAL_DIFFUSE,
@@ -243,14 +266,11 @@ SheenStatus sheen_mtl_add(MtlReader *r, const MtlMaterial *m, uint32_t *index)
                               .ior = 1.0f,
                               .name = sheen_arena_strdup(r->arena, m->name)};
     if (!material.name) return no_memory(r);
-    SheenMaterial mask = material;
+    SheenMaterial normals = material, mask = material;
     SheenStatus s = make_opaque(r, m, &material);
     if (s) return s;
     *index = sheen_builder_add_material(r->builder, &material);
-    if (!is_cut_out(m) || *index == SHEEN_NONE) return SHEEN_OK;
-    mask.kind = SHEEN_MATERIAL_MASK;
-    mask.nested[0] = *index;
-    s = read_texture(r, m, &m->opacity_map, rgb_gray(m->opacity), true, &mask.weight);
-    if (!s) *index = sheen_builder_add_material(r->builder, &mask);
+    if (m->normal_map.file && !is_glass(m)) s = add_normals(r, m, &normals, index);
+    if (!s && is_cut_out(m)) s = add_mask(r, m, &mask, index);
     return s;
 }

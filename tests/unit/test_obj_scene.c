@@ -24,7 +24,7 @@ static const SheenMaterial *material_of(Kit *k, const char *first, const char *b
     snprintf(mtl, sizeof mtl, "%snewmtl a\n%s\n", first, body);
     const SheenScene *s = scene(k, mtl, "usemtl a\nf 1/1 2/2 3/3\n");
     const SheenMaterial *m = &s->materials[s->shapes[0].material];
-    assert_int_equal(s->n_materials, 1 + (m->kind == SHEEN_MATERIAL_MASK));
+    assert_int_equal(s->n_materials, 1 + (m->kind == SHEEN_MATERIAL_MASK || m->kind == SHEEN_MATERIAL_NORMAL));
     assert_string_equal(m->name, "a");
     return m;
 }
@@ -180,6 +180,23 @@ static void what_is_partly_transparent_is_a_mask(void **state)
     assert_int_equal(m->kind, SHEEN_MATERIAL_DIFFUSE);
 }
 
+static void maps_of_normals(void **state)
+{
+    Kit *k = *state;
+    write_pixel(k, "n.png");
+    const SheenMaterial *m = material(k, "Kd .1 .2 .3\nnorm -bm 1 n.png");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_NORMAL);
+    kit_assert_rgb(sheen_texture_eval(&m->map, v2(0, 0)), rgb_gray(188.0f / 255.0f), 1e-5f); // no colour
+    kit_assert_rgb(k->scene->materials[m->nested[0]].reflectance.value, rgb(0.1f, 0.2f, 0.3f), 1e-6f);
+    m = material_of(k, "# Blender 4.2.0\n", "map_Bump -bm 1.0 n.png");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_NORMAL);
+    m = material(k, "map_Bump -bm 1.0 n.png");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_DIFFUSE);
+    assert_non_null(strstr(k->warnings, "room.mtl:2: 'map_Bump' is not supported"));
+    m = material(k, "norm no.png");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_DIFFUSE);
+}
+
 static void libraries_are_looked_for(void **state)
 {
     Kit *k = *state;
@@ -289,6 +306,7 @@ int main(void)
         KIT_TEST(materials_by_their_model_of_light),
         KIT_TEST(highlights_are_phong_lobes),
         KIT_TEST(blender_and_its_principled_materials),
+        KIT_TEST(maps_of_normals),
         KIT_TEST(what_is_partly_transparent_is_a_mask),
         KIT_TEST(pictures_are_multiplied_by_the_colour),
         KIT_TEST(libraries_are_looked_for),
