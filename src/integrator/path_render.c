@@ -135,7 +135,9 @@ static void render_tile_sample(Passes *p, uint32_t x0, uint32_t y0, uint32_t ind
         uint32_t x = x0 + i % width, y = y0 + i / width;
         w->samplers[i] = sampler_make(hash_combine(hash_combine(hash_u32(work->options.seed), x), y), index);
         Vec2 u = sampler_2d(&w->samplers[i]);
-        w->rays[i] = sheen_eye_ray(&p->eye, (float)x + u.x, (float)y + u.y);
+        float px = (float)x + u.x, py = (float)y + u.y;
+        w->rays[i] = sheen_eye_has_lens(&p->eye) ? sheen_eye_lens_ray(&p->eye, px, py, sampler_2d(&w->samplers[i]))
+                                                 : sheen_eye_ray(&p->eye, px, py);
     }
     sheen_accel_intersect_many(work->accel, SHEEN_COHERENT, n, w->rays, w->hits);
     w->stats.rays_camera += n;

@@ -80,7 +80,9 @@ static bool push_camera_rays(const SheenWork *work, const SheenEye *eye, const T
                 SheenSampler sampler =
                     sampler_make(hash_u32(work->options.seed), sheen_sample_index(x, y, work->options.spp, s));
                 Vec2 u = sampler_2d(&sampler);
-                EyeRay r = {sheen_eye_ray(eye, (float)x + u.x, (float)y + u.y), rgb_gray(1.0f), 0.0f, pixel, s, 1, 0};
+                float px = (float)x + u.x, py = (float)y + u.y;
+                EyeRay r = {sheen_eye_ray(eye, px, py), rgb_gray(1.0f), 0.0f, pixel, s, 1, 0};
+                if (sheen_eye_has_lens(eye)) r.ray = sheen_eye_lens_ray(eye, px, py, sampler_2d(&sampler));
                 if (!push_ray(v, 0, &r)) return false;
             }
     return true;
@@ -174,7 +176,7 @@ static bool arrive(const SheenWork *work, const SheenEye *eye, EyeRay *r, const 
         if (sheen_bsdf_is_delta(&bsdf)) return split(work, r, &s, &bsdf, next, v);
         if (!sheen_diffuse_point(&s, &bsdf, wo, &p.point)) return true;
     }
-    p.footprint = r->length * eye->pixel;
+    p.footprint = sheen_eye_footprint(eye, r->length);
     return push_point(v, &p);
 }
 

@@ -43,11 +43,26 @@ uint32_t sheen_sample_index(uint32_t x, uint32_t y, uint32_t per_pixel, uint32_t
 SheenEye sheen_eye(const SheenCamera *camera, uint32_t width, uint32_t height)
 {
     // The camera looks along +z; +x is to the left in the picture and +y up.
-    float half = tanf(0.5f * camera->fov_x), pixel = 2.0f * half / (float)width;
     const Transform *t = &camera->to_world;
-    return (SheenEye){.origin = transform_point(t, v3(0, 0, 0)),
-                      .corner = transform_vector(t, v3(half, 0.5f * (float)height * pixel, 1.0f)),
-                      .right = transform_vector(t, v3(-pixel, 0, 0)),
-                      .down = transform_vector(t, v3(0, -pixel, 0)),
-                      .pixel = pixel};
+    Vec2 lo = camera->cut_lo, hi = camera->cut_hi;
+    float half = camera->orthographic ? 1.0f : tanf(0.5f * camera->fov_x);
+    float pixel = 2.0f * half * (1.0f - lo.x - hi.x) / (float)width;
+    float film_height = (float)height / (1.0f - lo.y - hi.y); // pixels
+    float x = half - lo.x * 2.0f * half, y = (0.5f - lo.y) * film_height * pixel;
+    SheenEye eye = {.origin = transform_point(t, v3(0, 0, 0)),
+                    .corner = transform_vector(t, v3(x, y, 1.0f)),
+                    .right = transform_vector(t, v3(-pixel, 0, 0)),
+                    .down = transform_vector(t, v3(0, -pixel, 0)),
+                    .pixel = pixel,
+                    .lens_u = transform_vector(t, v3(camera->aperture, 0, 0)),
+                    .lens_v = transform_vector(t, v3(0, camera->aperture, 0)),
+                    .focus = camera->focus};
+    if (camera->orthographic) {
+        eye.parallel = true;
+        eye.origin = transform_point(t, v3(x, y, 0.0f));
+        eye.corner = transform_vector(t, v3(0, 0, 1));
+        eye.pixel = sqrtf(v3_length(v3_cross(eye.right, eye.down)));
+        eye.lens_u = eye.lens_v = v3(0, 0, 0);
+    }
+    return eye;
 }

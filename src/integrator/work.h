@@ -8,6 +8,7 @@
 #include "base/progress.h"
 #include "film/film.h"
 #include "light/light.h"
+#include "math/warp.h"
 #include "ray/accel.h"
 #include "scene/scene.h"
 
@@ -61,10 +62,13 @@ typedef struct SheenWork {
 
 /** A camera and the picture that it takes, ready to make rays. */
 typedef struct SheenEye {
-    Vec3 origin;
-    Vec3 corner;      // from the origin to the upper left corner of the picture at distance 1
-    Vec3 right, down; // one pixel's steps there
-    float pixel;      // side of a pixel at distance 1, metres
+    Vec3 origin; // of the ray through the upper left corner of the picture; the same for all but for a parallel eye
+    Vec3 corner; // from the origin to that corner at distance 1
+    Vec3 right, down;    // one pixel's steps there, or of the origin of a parallel eye
+    bool parallel;       // orthographic
+    float pixel;         // side of a pixel at distance 1, metres; at any distance of a parallel eye
+    Vec3 lens_u, lens_v; // radii of the lens, zero for a pinhole
+    float focus;         // distance of what is sharp, in the unit of corner
 } SheenEye;
 
 /**
@@ -82,7 +86,29 @@ SheenEye sheen_eye(const SheenCamera *camera, uint32_t width, uint32_t height);
  */
 static inline Ray sheen_eye_ray(const SheenEye *eye, float x, float y)
 {
+    if (eye->parallel)
+        return (Ray){v3_mad(v3_mad(eye->origin, x, eye->right), y, eye->down), INFINITY, v3_normalize(eye->corner)};
     return (Ray){eye->origin, INFINITY, v3_normalize(v3_mad(v3_mad(eye->corner, x, eye->right), y, eye->down))};
+}
+
+static inline bool sheen_eye_has_lens(const SheenEye *eye)
+{
+    return v3_length2(eye->lens_u) > 0.0f;
+}
+
+/** The same from a point of the thin lens, for u in [0, 1)^2: all meet in the plane in focus. Source: cook1984. */
+static inline Ray sheen_eye_lens_ray(const SheenEye *eye, float x, float y, Vec2 u)
+{
+    Vec2 p = warp_disk(u);
+    Vec3 offset = v3_mad(v3_scale(eye->lens_u, p.x), p.y, eye->lens_v);
+    Vec3 target = v3_scale(v3_mad(v3_mad(eye->corner, x, eye->right), y, eye->down), eye->focus);
+    return (Ray){v3_add(eye->origin, offset), INFINITY, v3_normalize(v3_sub(target, offset))};
+}
+
+/** @return side of a pixel on a surface after a way of that length, metres. */
+static inline float sheen_eye_footprint(const SheenEye *eye, float length)
+{
+    return eye->parallel ? eye->pixel : length * eye->pixel;
 }
 
 /**

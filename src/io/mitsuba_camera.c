@@ -51,6 +51,27 @@ static uint32_t read_side(Mitsuba *m, const SheenXml *film, const char *name, ui
     return otherwise;
 }
 
+/** The window of the film that is rendered: it becomes the picture. */
+static void read_crop(Mitsuba *m, const SheenXml *film, SheenCamera *c)
+{
+    int64_t film_w = c->width, film_h = c->height;
+    int64_t x = sheen_mi_integer(m, film, "crop_offset_x", 0), y = sheen_mi_integer(m, film, "crop_offset_y", 0);
+    if (m->status) return;
+    bool inside = x >= 0 && x < film_w && y >= 0 && y < film_h;
+    int64_t w = sheen_mi_integer(m, film, "crop_width", inside ? film_w - x : 0);
+    int64_t h = sheen_mi_integer(m, film, "crop_height", inside ? film_h - y : 0);
+    if (m->status) return;
+    if (!inside || w < 1 || h < 1 || w > film_w - x || h > film_h - y) {
+        sheen_mi_fail(m, SHEEN_ERR_PARSE, film, "the crop window does not lie in the film of %u x %u pixels", c->width,
+                      c->height);
+        return;
+    }
+    c->width = (uint32_t)w, c->height = (uint32_t)h;
+    c->cut_lo = v2((float)((double)x / (double)film_w), (float)((double)y / (double)film_h));
+    c->cut_hi =
+        v2((float)((double)(film_w - x - w) / (double)film_w), (float)((double)(film_h - y - h) / (double)film_h));
+}
+
 static void read_film(Mitsuba *m, const SheenXml *e, SheenCamera *c)
 {
     c->width = 768, c->height = 576; // Mitsuba's default
@@ -60,28 +81,55 @@ static void read_film(Mitsuba *m, const SheenXml *e, SheenCamera *c)
     c->height = read_side(m, film, "height", c->height);
     if (!m->status && (uint64_t)c->width * c->height > SHEEN_IMAGE_MAX_PIXELS)
         sheen_mi_fail(m, SHEEN_ERR_PARSE, film, "a picture of %u x %u pixels is too large", c->width, c->height);
-    for (SheenXml *p = film->first; p; p = p->next) {
-        const char *name = sheen_xml_attribute(p, "name");
-        if (name && strncmp(name, "crop", 4) == 0)
-            sheen_xml_warn(m->log, p, "'%s' is not supported: the whole picture is rendered", name);
-    }
+    if (!m->status) read_crop(m, film, c);
+    const SheenXml *filter = sheen_mi_nested(m, film, "rfilter");
+    const char *type = filter ? sheen_mi_type(filter) : "box";
+    // Each sample counts for its own pixel alone. The common filters differ little from that; others are named.
+    if (!sheen_mi_same(type, "box") && !sheen_mi_same(type, "tent") && !sheen_mi_same(type, "gaussian"))
+        sheen_xml_warn(m->log, filter, "the reconstruction filter '%s' is not supported: 'box' stands in", type);
+}
+
+/** The principal point: the film is shifted, fractions of its width and height, right and down. */
+static void read_shift(Mitsuba *m, const SheenXml *e, SheenCamera *c)
+{
+    float x = (float)sheen_mi_float(m, e, "principal_point_offset_x", 0.0);
+    float y = (float)sheen_mi_float(m, e, "principal_point_offset_y", 0.0);
+    c->cut_lo = v2(c->cut_lo.x + x, c->cut_lo.y + y);
+    c->cut_hi = v2(c->cut_hi.x - x, c->cut_hi.y - y);
+}
+
+static void read_lens(Mitsuba *m, const SheenXml *e, SheenCamera *c)
+{
+    double aperture = sheen_mi_float(m, e, "aperture_radius", 0.0);
+    double focus = sheen_mi_float(m, e, "focus_distance", 1.0);
+    if (!m->status && !(aperture >= 0.0 && aperture < 1e15 && focus > 0.0 && focus < 1e15))
+        sheen_mi_fail(m, SHEEN_ERR_PARSE, e, "a lens needs apertureRadius >= 0 and focusDistance > 0, not %g and %g",
+                      aperture, focus);
+    c->aperture = (float)aperture, c->focus = (float)focus;
 }
 
 void sheen_mi_sensor(Mitsuba *m, SheenXml *e)
 {
     const char *type = sheen_mi_type(e), *id = sheen_xml_attribute(e, "id");
     SheenCamera c = {.to_world = sheen_mi_transform(m, e, "to_world")};
-    if (!sheen_mi_same(type, "perspective"))
+    bool lens = sheen_mi_same(type, "thinlens");
+    c.orthographic = sheen_mi_same(type, "orthographic");
+    if (!lens && !c.orthographic && !sheen_mi_same(type, "perspective"))
         sheen_xml_warn(m->log, e, "the camera '%s' is not supported: a perspective camera stands in", type);
     read_film(m, e, &c);
+    double aspect = (double)c.width / c.height; // of the whole film
+    if (!m->status) aspect *= (double)(1.0f - c.cut_lo.y - c.cut_hi.y) / (double)(1.0f - c.cut_lo.x - c.cut_hi.x);
     const SheenXml *sampler = sheen_mi_nested(m, e, "sampler");
     int64_t spp = sampler ? sheen_mi_integer(m, sampler, "sample_count", 0) : 0;
     c.spp = spp > 0 && spp <= UINT32_MAX ? (uint32_t)spp : 0;
     if (m->status) return;
-    c.fov_x = (float)read_fov(m, e, (double)c.width / c.height);
+    if (!c.orthographic) c.fov_x = (float)read_fov(m, e, aspect);
+    if (!m->status) read_shift(m, e, &c);
+    if (lens && !m->status) read_lens(m, e, &c);
     Transform inverse;
     if (!m->status && !transform_invert(&c.to_world, &inverse))
         sheen_mi_fail(m, SHEEN_ERR_PARSE, e, "the camera's transform is singular");
+    // Nothing between the camera and the scene is to be cut away, and nothing moves; a pinhole has no focus.
     sheen_mi_ignore(e, "near_clip far_clip focus_distance aperture_radius shutter_open shutter_close");
     sheen_mi_report_unused(m, e);
     c.name = sheen_arena_strdup(m->arena, id ? id : "camera");

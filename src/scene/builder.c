@@ -168,13 +168,22 @@ uint32_t sheen_builder_add_light(SheenBuilder *b, const SheenLight *light)
     return b->environment;
 }
 
+static bool camera_ok(const SheenCamera *c)
+{
+    Transform inverse;
+    float w = 1.0f - c->cut_lo.x - c->cut_hi.x, h = 1.0f - c->cut_lo.y - c->cut_hi.y;
+    bool film = c->width && c->height && w > 0.0f && h > 0.0f && isfinite(w) && isfinite(h);
+    bool angle = c->orthographic || (c->fov_x > 0.0f && c->fov_x < SHEEN_PI);
+    bool lens = c->aperture == 0.0f || (c->aperture > 0.0f && isfinite(c->aperture) && isnormal(c->focus));
+    return film && angle && lens && transform_invert(&c->to_world, &inverse);
+}
+
 uint32_t sheen_builder_add_camera(SheenBuilder *b, const SheenCamera *camera)
 {
     SheenCamera c = *camera;
     if (!c.name) c.name = "";
-    Transform inverse;
-    if (!transform_invert(&c.to_world, &inverse) || !(c.fov_x > 0.0f && c.fov_x < SHEEN_PI) || !c.width || !c.height) {
-        sheen_warn(b->log, "%s: camera '%s' has a singular transform, no picture or no field of view: left out",
+    if (!camera_ok(&c)) {
+        sheen_warn(b->log, "%s: camera '%s' has a singular transform, no picture, field of view or focus: left out",
                    b->name, c.name);
         return SHEEN_NONE;
     }

@@ -158,8 +158,12 @@ typedef struct SheenLight {
 typedef struct SheenCamera {
     const char *name;       // never NULL
     Transform to_world;     // looks along +z, +y up, +x to the left in the picture (Mitsuba's convention); may mirror
-    float fov_x;            // full horizontal angle, radians, of the picture as the scene gives its size
-    uint32_t width, height; // pixels, from the scene's film
+    float fov_x;            // full horizontal angle of the whole film, radians; 0 when orthographic
+    bool orthographic;      // parallel rays along +z from a film two metres wide in its own space
+    float aperture, focus;  // radius of a thin lens, 0 for a pinhole, and distance of the plane in focus; own space
+    Vec2 cut_lo, cut_hi;    // parts of the film left out of the picture: left and above, right and below, as fractions
+                            // of its width and height; a film that is shifted has one of a pair below zero
+    uint32_t width, height; // pixels of the picture, from the scene's film
     uint32_t spp;           // samples per pixel that the scene asks for, 0 when it says nothing
 } SheenCamera;
 

@@ -147,6 +147,18 @@ static void mistyped_values(void **state)
         {"<shape type=\"cube\"><bsdf type=\"diffuse\"><texture name=\"reflectance\" type=\"gridtexture\"><float "
          "name=\"line_width\" value=\"0.6\"/></texture></bsdf></shape>",
          "scene.xml:2:88", "0 to 0.5 wide"},
+        {"<sensor type=\"thinlens\"><float name=\"fov\" value=\"40\"/><float name=\"aperture_radius\" "
+         "value=\"-1\"/></sensor>",
+         "scene.xml:2:1", "a lens needs"},
+        {"<sensor type=\"thinlens\"><float name=\"fov\" value=\"40\"/><float name=\"focus_distance\" "
+         "value=\"0\"/></sensor>",
+         "scene.xml:2:1", "a lens needs"},
+        {"<sensor type=\"perspective\"><film type=\"hdrfilm\"><integer name=\"crop_offset_x\" value=\"760\"/><integer "
+         "name=\"crop_width\" value=\"9\"/></film></sensor>",
+         "scene.xml:2:28", "the crop window does not lie"},
+        {"<sensor type=\"perspective\"><film type=\"hdrfilm\"><integer name=\"crop_offset_y\" "
+         "value=\"-1\"/></film></sensor>",
+         "scene.xml:2:28", "the crop window does not lie"},
         {"<default name=\"a\"/>", "scene.xml:2:1", "<default> needs"},
         {"<shape type=\"$kind\"/>", "scene.xml:2:1", "the parameter '$kind' is not defined"},
         {"<include/>", "scene.xml:2:1", "<include> needs"},

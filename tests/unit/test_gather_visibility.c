@@ -39,6 +39,74 @@ static void test_camera_rays(void **state)
     }
 }
 
+// A window of the film sees what the whole film sees there, and so does a film that is shifted.
+static void test_windows_of_the_film(void **state)
+{
+    (void)state;
+    SheenCamera camera = {.to_world = transform_look_at(v3(1, 2, 3), v3(1, 5, 3), v3(0, 0, 1)), .fov_x = 1.2f};
+    for (int orthographic = 0; orthographic < 2; ++orthographic) {
+        camera.orthographic = orthographic;
+        camera.cut_lo = camera.cut_hi = v2(0, 0);
+        SheenEye whole = sheen_eye(&camera, 40, 20);
+        camera.cut_lo = v2(0.25f, 0.5f), camera.cut_hi = v2(0.5f, 0.25f); // 10 x 5 pixels from (10, 10) on
+        SheenEye window = sheen_eye(&camera, 10, 5);
+        camera.cut_lo = v2(0.1f, 0.2f), camera.cut_hi = v2(-0.1f, -0.2f);
+        SheenEye shifted = sheen_eye(&camera, 40, 20);
+        for (int i = 0; i < 3; ++i) {
+            float x = 4.0f * (float)i, y = 2.0f * (float)i;
+            Ray ray = sheen_eye_ray(&whole, 10.0f + x, 10.0f + y), part = sheen_eye_ray(&window, x, y);
+            assert_direction(part.d, ray.d);
+            assert_true(v3_length(v3_sub(part.o, ray.o)) < 1e-6f);
+            ray = sheen_eye_ray(&whole, 4.0f + x, 4.0f + y), part = sheen_eye_ray(&shifted, x, y);
+            assert_direction(part.d, ray.d);
+            assert_true(v3_length(v3_sub(part.o, ray.o)) < 1e-6f);
+        }
+        assert_true(fabsf(window.pixel - whole.pixel) < 1e-6f);
+    }
+}
+
+// Parallel rays from a window two wide, its height by the picture's shape.
+static void test_orthographic_rays(void **state)
+{
+    (void)state;
+    SheenCamera camera = {.to_world = transform_mul(transform_translate(5, 0, 0), transform_scale(3, 3, 3)),
+                          .orthographic = true};
+    SheenEye eye = sheen_eye(&camera, 40, 20);
+    Ray corner = sheen_eye_ray(&eye, 0, 0), opposite = sheen_eye_ray(&eye, 40, 20);
+    assert_direction(corner.d, v3(0, 0, 1));
+    assert_direction(opposite.d, v3(0, 0, 1));
+    assert_true(v3_length(v3_sub(corner.o, v3(8, 1.5f, 0))) < 1e-5f); // Mitsuba 3, but for its near clip
+    assert_true(v3_length(v3_sub(opposite.o, v3(2, -1.5f, 0))) < 1e-5f);
+    // A pixel is as large at any distance: 6 metres over 40.
+    assert_true(fabsf(sheen_eye_footprint(&eye, 1.0f) - 0.15f) < 1e-6f);
+    assert_true(fabsf(sheen_eye_footprint(&eye, 100.0f) - 0.15f) < 1e-6f);
+}
+
+// All rays of one point of the picture meet in the plane in focus, and their origins fill the lens.
+static void test_lens_rays_meet_in_focus(void **state)
+{
+    (void)state;
+    SheenCamera camera = {.to_world = transform_look_at(v3(1, 2, 3), v3(1, 5, 3), v3(0, 0, 1)),
+                          .fov_x = 1.2f,
+                          .aperture = 0.3f,
+                          .focus = 5.0f};
+    SheenEye eye = sheen_eye(&camera, 40, 20);
+    assert_true(sheen_eye_has_lens(&eye));
+    Ray pinhole = sheen_eye_ray(&eye, 7, 3);
+    Vec3 sharp = v3_mad(pinhole.o, 5.0f / pinhole.d.y, pinhole.d); // looks along +y
+    float farthest = 0.0f;
+    SheenSampler sampler = sampler_make(1, 0);
+    for (int i = 0; i < 256; ++i) {
+        Ray ray = sheen_eye_lens_ray(&eye, 7, 3, sampler_2d(&sampler));
+        assert_true(fabsf(ray.o.y - 2.0f) < 1e-6f);
+        farthest = maxf(farthest, v3_length(v3_sub(ray.o, pinhole.o)));
+        Vec3 met = v3_mad(ray.o, (sharp.y - ray.o.y) / ray.d.y, ray.d);
+        assert_true(v3_length(v3_sub(met, sharp)) < 1e-5f);
+    }
+    // Of 256 points in a disk one lies beyond 0.9 of the radius but for a chance of 0.81^256.
+    assert_true(farthest > 0.9f * 0.3f && farthest < 0.3f + 1e-6f);
+}
+
 // On an aligned square of a power of two each number from 0 to pixels x samples comes once.
 static void test_sample_index_is_a_bijection(void **state)
 {
@@ -263,6 +331,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_camera_rays),
+        cmocka_unit_test(test_windows_of_the_film),
+        cmocka_unit_test(test_orthographic_rays),
+        cmocka_unit_test(test_lens_rays_meet_in_focus),
         cmocka_unit_test(test_sample_index_is_a_bijection),
         cmocka_unit_test(test_sample_index_takes_all_bits),
         cmocka_unit_test(test_tiles_cover_the_picture),

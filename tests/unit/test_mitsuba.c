@@ -816,13 +816,56 @@ static void cameras(void **state)
         kit_assert_v3(transform_vector(&c->to_world, v3(0, 0, 1)), v3(0, 0, -1), EPS);
     }
     // Neither angle nor focal length: 50 mm on a film of 36 x 24 mm (Mitsuba 3), 768 x 576 pixels.
-    const SheenCamera *c = &kit_scene(k, "<sensor type=\"thinlens\"/>")->cameras[0];
+    const SheenCamera *c = &kit_scene(k, "<sensor type=\"telecentric\"/>")->cameras[0];
     assert_true(fabs((double)c->fov_x * 180.0 / 3.14159265358979 - 38.1848) < 1e-4);
     assert_int_equal(c->width, 768);
-    assert_non_null(strstr(k->warnings, "'thinlens' is not supported: a perspective camera stands in"));
+    assert_non_null(strstr(k->warnings, "'telecentric' is not supported: a perspective camera stands in"));
 }
 
 // ---- the language -----------------------------------------------------------------------------------------------
+
+static void other_cameras(void **state)
+{
+    Kit *k = *state;
+    const SheenScene *s =
+        kit_scene(k, "<sensor type=\"orthographic\"><float name=\"near_clip\" value=\"1\"/></sensor>");
+    assert_true(s->cameras[0].orthographic);
+    assert_int_equal(k->n_warnings, 1); // no light
+    static const struct {
+        const char *version, *aperture, *focus, *shift;
+    } spellings[] = {{"0.5.0", "apertureRadius", "focusDistance", "principalPointOffsetX"},
+                     {"3.0.0", "aperture_radius", "focus_distance", "principal_point_offset_x"}};
+    for (size_t i = 0; i < sizeof spellings / sizeof *spellings; ++i) {
+        char body[1024];
+        snprintf(body, sizeof body,
+                 "<sensor type=\"thinlens\"><float name=\"fov\" value=\"40\"/><float name=\"%s\" value=\"0.2\"/>"
+                 "<float name=\"%s\" value=\"7\"/><float name=\"%s\" value=\"0.1\"/></sensor>",
+                 spellings[i].aperture, spellings[i].focus, spellings[i].shift);
+        assert_int_equal(kit_load_version(k, spellings[i].version, body), SHEEN_OK);
+        const SheenCamera *c = &k->scene->cameras[0];
+        assert_float_equal(c->aperture, 0.2f, 0.0f);
+        assert_float_equal(c->focus, 7.0f, 0.0f);
+        assert_float_equal(c->cut_lo.x, 0.1f, 0.0f);
+        assert_float_equal(c->cut_hi.x, -0.1f, 0.0f);
+        assert_int_equal(k->n_warnings, 1);
+    }
+    // A window of a film: the angle remains the whole film's, along y here.
+    s = kit_scene(k, "<sensor type=\"perspective\"><float name=\"fov\" value=\"40\"/><string name=\"fov_axis\" "
+                     "value=\"y\"/><film type=\"hdrfilm\"><integer name=\"width\" value=\"200\"/><integer "
+                     "name=\"height\" value=\"100\"/><integer name=\"crop_offset_x\" value=\"50\"/><integer "
+                     "name=\"cropOffsetY\" value=\"25\"/><integer name=\"crop_width\" value=\"20\"/><integer "
+                     "name=\"crop_height\" value=\"50\"/><rfilter type=\"mitchell\"/></film></sensor>");
+    const SheenCamera *c = &s->cameras[0];
+    assert_int_equal(c->width, 20);
+    assert_int_equal(c->height, 50);
+    assert_float_equal(c->fov_x * 180.0f / SHEEN_PI, 72.10477f, 1e-4f); // as above
+    assert_float_equal(c->cut_lo.x, 0.25f, 0.0f);
+    assert_float_equal(c->cut_hi.x, 0.65f, 1e-7f);
+    assert_float_equal(c->cut_lo.y, 0.25f, 0.0f);
+    assert_float_equal(c->cut_hi.y, 0.25f, 0.0f);
+    assert_int_equal(k->n_warnings, 2); // no light, and:
+    assert_non_null(strstr(k->warnings, "the reconstruction filter 'mitchell' is not supported: 'box' stands in"));
+}
 
 static void parameters_and_includes(void **state)
 {
@@ -895,6 +938,7 @@ int main(void)
         KIT_TEST(lights),
         KIT_TEST(environments),
         KIT_TEST(cameras),
+        KIT_TEST(other_cameras),
         KIT_TEST(parameters_and_includes),
         KIT_TEST(what_is_not_known_is_named_and_ignored),
         KIT_TEST(both_spellings_mean_the_same),
