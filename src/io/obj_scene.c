@@ -285,6 +285,7 @@ SheenStatus sheen_obj_read(const char *path, const SheenLog *log, SheenScene **o
     SheenStatus s = r.scratch ? sheen_builder_create(log, path, &r.builder) : no_memory(&r);
     if (!s) {
         r.arena = sheen_builder_arena(r.builder);
+        sheen_builder_expect_no_camera(r.builder);
         s = read_scene(&r);
     }
     sheen_arena_destroy(&r.scratch); // before the renderer needs the memory

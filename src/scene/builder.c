@@ -26,7 +26,8 @@ struct SheenBuilder {
     uint32_t n_groups;                                   // the world included
     uint32_t group;                                      // that shapes join, 0 for the world
     uint32_t environment;                                // index into lights, or SHEEN_NONE
-    SheenStatus status;                                  // first failure of an add function
+    bool no_camera_expected;
+    SheenStatus status; // first failure of an add function
 };
 
 #define LIST_AT(list, T, i) (&((T *)(list).data)[i])
@@ -188,6 +189,11 @@ uint32_t sheen_builder_add_camera(SheenBuilder *b, const SheenCamera *camera)
         return SHEEN_NONE;
     }
     return list_add(b, &b->cameras, &c, sizeof c);
+}
+
+void sheen_builder_expect_no_camera(SheenBuilder *b)
+{
+    b->no_camera_expected = true;
 }
 
 uint32_t sheen_builder_begin_group(SheenBuilder *b)
@@ -382,7 +388,8 @@ static SheenStatus complete(SheenBuilder *b, SheenScene *scene, uint32_t map[])
     if (s) return s;
     if (b->cameras.n == 0) {
         SheenCamera camera = default_camera(scene);
-        sheen_warn(b->log, "%s: the scene has no camera: one that sees all of it stands in", b->name);
+        if (!b->no_camera_expected)
+            sheen_warn(b->log, "%s: the scene has no camera: one that sees all of it stands in", b->name);
         if (list_add(b, &b->cameras, &camera, sizeof camera) == SHEEN_NONE) return SHEEN_ERR_NOMEM;
     }
     SheenMaterial *materials = SHEEN_ARENA_NEW(b->arena, SheenMaterial, b->materials.n);

@@ -38,6 +38,8 @@ uint32_t sheen_builder_add_area_light(SheenBuilder *builder, uint32_t shape, Rgb
 /** Any light but an area light. A second environment light replaces the first, with a warning. */
 uint32_t sheen_builder_add_light(SheenBuilder *builder, const SheenLight *light);
 uint32_t sheen_builder_add_camera(SheenBuilder *builder, const SheenCamera *camera);
+/** Of a format that knows no cameras: one that sees the whole scene is no cause for a warning. */
+void sheen_builder_expect_no_camera(SheenBuilder *builder);
 /** Opens a group: shapes added until sheen_builder_end_group belong to it and are seen only through instances. */
 uint32_t sheen_builder_begin_group(SheenBuilder *builder);
 void sheen_builder_end_group(SheenBuilder *builder);
@@ -47,7 +49,8 @@ uint32_t sheen_builder_add_instance(SheenBuilder *builder, uint32_t group, const
 /**
  * Checks and completes the scene: drops triangles with non-finite vertices or no area (one warning a shape, with their
  * number), replaces shading normals that are not finite or zero by face normals, drops shapes without anything left,
- * negative or non-finite radiance (a warning), adds a camera that sees the whole scene when there is none (a warning),
+ * negative or non-finite radiance (a warning), adds a camera that sees the whole scene when there is none (a warning
+ * where one was expected),
  * warns when there is no light, and computes the bounds.
  *
  * @param out  owned by the caller; *builder becomes NULL in every case

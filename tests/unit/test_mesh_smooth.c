@@ -52,7 +52,7 @@ static void edges_by_angle(void **state)
 static void edges_by_group(void **state)
 {
     Kit *k = *state;
-    const uint32_t same[4] = {3, 3, 3, 3}, two[4] = {3, 3, 4, 4}, none[4] = {3, 3, 0, 0};
+    const uint32_t same[4] = {3, 3, 3, 3}, two[4] = {3, 3, 4, 4}, none[4] = {0, 0, 0, 0};
     MeshData m = folded(k, 1.0f);
     assert_true(sheen_mesh_smooth_edges(k->arena, &m, same, SHEEN_PI));
     kit_assert_v3(normal_at(&m, 0, v3(0, 1, 0)), v3(sinf(0.5f), 0, cosf(0.5f)), 1e-6f);

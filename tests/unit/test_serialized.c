@@ -164,6 +164,20 @@ static void damaged_files_are_refused(void **state)
     b.n = 0;
     put_mesh(&b, 3, SINGLE, 1, UINT64_MAX / 12 + 2, 2);
     refused(k, &b, 0, SHEEN_ERR_PARSE, "promises more");
+    const uint64_t counts[] = {200000000, 4294967294, 4294967296, UINT64_MAX};
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; ++i) {
+        Bytes raw = {.n = 0};
+        put(&raw, SINGLE, 4);
+        put(&raw, counts[i], 8);
+        put(&raw, 0, 8);
+        b.n = 0;
+        put(&b, 0x041C, 2);
+        put(&b, 3, 2);
+        uLongf size = sizeof b.data - b.n;
+        assert_int_equal(compress(b.data + b.n, &size, raw.data, raw.n), Z_OK);
+        b.n += size;
+        refused(k, &b, 0, SHEEN_ERR_PARSE, "promises more");
+    }
 }
 
 static void scenes_name_the_mesh_by_its_index(void **state)
