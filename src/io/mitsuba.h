@@ -135,6 +135,9 @@ void sheen_mi_shape_group(Mitsuba *m, SheenXml *e);
 /** mitsuba_light.c: adds a light that is not on a shape. */
 void sheen_mi_emitter(Mitsuba *m, SheenXml *e);
 
+/** mitsuba_sky.c: adds the lights of `sky`, `sun` or `sunsky`. */
+void sheen_mi_sky(Mitsuba *m, SheenXml *e);
+
 /** mitsuba_camera.c: adds the camera of a <sensor>. */
 void sheen_mi_sensor(Mitsuba *m, SheenXml *e);
 

@@ -75,36 +75,9 @@ static void read_envmap(Mitsuba *m, SheenXml *e)
     if (sheen_mi_bitmap(m, e, true, 0.0, &l.environment)) sheen_builder_add_light(m->builder, &l);
 }
 
-/**
- * A clear sky as a constant, and its sun as a directional light: magnitudes of noon in W m^-2 nm^-1 (sr^-1), from
- * 5,000 cd/m^2 and 100,000 lx at 683 lm/W over the 107 nm of the luminosity function.
- */
-static void read_sky(Mitsuba *m, SheenXml *e)
-{
-    const char *type = sheen_mi_type(e);
-    double scale = sheen_mi_float(m, e, "scale", 1.0);
-    double sky = sheen_mi_float(m, e, "sky_scale", scale), sun = sheen_mi_float(m, e, "sun_scale", scale);
-    bool has_sky = !sheen_mi_same(type, "sun"), has_sun = !sheen_mi_same(type, "sky");
-    Transform t = sheen_mi_transform(m, e, "to_world");
-    Vec3 to_sun = transform_vector(&t, sheen_mi_vector(m, e, "sun_direction", v3(0.4f, 0.8f, 0.45f)));
-    sheen_xml_warn(m->log, e, "the light '%s' is not supported: %s%s%s stands in", type,
-                   has_sky ? "a constant sky" : "", has_sky && has_sun ? " with " : "",
-                   has_sun ? "a directional sun" : "");
-    sheen_mi_ignore(e,
-                    "turbidity sun_radius_scale albedo latitude longitude timezone year month day hour minute second "
-                    "stretch resolution sun_aperture extend");
-    SheenLight l = {.kind = SHEEN_LIGHT_ENVIRONMENT};
-    l.radiance = rgb_scale(rgb(0.055f, 0.07f, 0.1f), (float)sky);
-    if (has_sky) sheen_builder_add_light(m->builder, &l);
-    l = (SheenLight){.kind = SHEEN_LIGHT_DIRECTIONAL, .direction = v3_neg(to_sun)};
-    l.radiance = rgb_scale(rgb(1.5f, 1.35f, 1.15f), (float)sun);
-    if (has_sun) sheen_builder_add_light(m->builder, &l);
-}
-
 static const Plugin plugins[] = {
-    {"point", read_point},       {"spot", read_spot},     {"directional", read_directional},
-    {"constant", read_constant}, {"envmap", read_envmap}, {"sky", read_sky},
-    {"sunsky", read_sky},        {"sun", read_sky},
+    {"point", read_point},   {"spot", read_spot},   {"directional", read_directional}, {"constant", read_constant},
+    {"envmap", read_envmap}, {"sky", sheen_mi_sky}, {"sunsky", sheen_mi_sky},          {"sun", sheen_mi_sky},
 };
 
 void sheen_mi_emitter(Mitsuba *m, SheenXml *e)

@@ -159,6 +159,12 @@ static void mistyped_values(void **state)
         {"<sensor type=\"perspective\"><film type=\"hdrfilm\"><integer name=\"crop_offset_y\" "
          "value=\"-1\"/></film></sensor>",
          "scene.xml:2:28", "the crop window does not lie"},
+        {"<emitter type=\"sunsky\"><integer name=\"month\" value=\"13\"/></emitter>", "scene.xml:2:1",
+         "in the calendar"},
+        {"<emitter type=\"sky\"><vector name=\"sun_direction\"/></emitter>", "scene.xml:2:1",
+         "the sun has no direction"},
+        {"<emitter type=\"sky\"><transform name=\"to_world\"><scale value=\"0\"/></transform></emitter>",
+         "scene.xml:2:1", "the transform of the sky is singular"},
         {"<default name=\"a\"/>", "scene.xml:2:1", "<default> needs"},
         {"<shape type=\"$kind\"/>", "scene.xml:2:1", "the parameter '$kind' is not defined"},
         {"<include/>", "scene.xml:2:1", "<include> needs"},

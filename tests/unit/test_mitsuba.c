@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Mitsuba scenes: what each element becomes. Values marked "Mitsuba 3" were read from version 3.9 for the same input.
 #include "image/image.h"
+#include "io/sky.h"
 #include "io_kit.h"
+#include "light/environment.h"
 #include "scene/metal.h"
 
 // Coordinates of order 1 through a few double operations and one rounding.
@@ -778,11 +780,49 @@ static void environments(void **state)
     assert_float_equal(l->radiance.b, 2.0f, 0.0f);
     kit_assert_v3(transform_vector(&l->to_world, v3(0, 1, 0)), v3(0, 0, 1), EPS);
     kit_assert_v3(transform_vector(&l->to_light, v3(0, 0, 1)), v3(0, 1, 0), EPS);
-    s = kit_scene(k, "<emitter type=\"sunsky\"><vector name=\"sunDirection\" x=\"0\" y=\"1\" z=\"0\"/>"
-                     "<float name=\"skyScale\" value=\"30\"/></emitter>");
-    assert_int_equal(s->n_lights, 2);
-    assert_non_null(strstr(k->warnings, "'sunsky' is not supported"));
-    kit_assert_v3(s->lights[1].direction, v3(0, -1, 0), EPS);
+}
+
+static void skies_and_suns(void **state)
+{
+    Kit *k = *state;
+    const double candelas = 683.0 * 106.86;
+    static const struct {
+        const char *version, *sun, *haze;
+        Vec3 up;
+    } cases[] = {{"3.0.0", "<vector name=\"sun_direction\" x=\"0.6\" z=\"0.8\"/>", "sky_scale", {0, 0, 1}},
+                 {"0.5.0", "<vector name=\"sunDirection\" x=\"0.6\" y=\"0.8\"/>", "skyScale", {0, 1, 0}},
+                 {"0.6.0", "<vector name=\"sunDirection\" z=\"-0.6\" y=\"0.8\"/>", "skyScale", {0, 1, 0}}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        char body[512];
+        snprintf(body, sizeof body,
+                 "<emitter type=\"sunsky\">%s<float name=\"%s\" value=\"30\"/><float name=\"turbidity\" value=\"4\"/>"
+                 "</emitter>",
+                 cases[i].sun, cases[i].haze);
+        assert_int_equal(kit_load_version(k, cases[i].version, body), SHEEN_OK);
+        const SheenScene *s = k->scene;
+        assert_int_equal(s->n_lights, 2);
+        assert_int_equal(k->n_warnings, 1); // no camera
+        const SheenLight *sky = &s->lights[s->environment], *sun = &s->lights[1];
+        Vec3 to_sun = v3_neg(sun->direction);
+        assert_float_equal(v3_dot(to_sun, cases[i].up), 0.8f, EPS);
+        float zenith = rgb_luminance(sheen_environment_radiance(sky, cases[i].up));
+        // The pixels at the pole are all the zenith; sRGB's matrix has four digits.
+        assert_true(fabs((double)zenith * candelas / (30.0 * sheen_sky_zenith(4.0, acos(0.8))) - 1.0) < 1e-3);
+        Vec3 mirrored = v3_sub(v3_scale(cases[i].up, 1.6f), to_sun);
+        assert_true(sheen_environment_radiance(sky, to_sun).g > 2.0f * sheen_environment_radiance(sky, mirrored).g);
+        assert_true(rgb_is_black(sheen_environment_radiance(sky, v3_scale(cases[i].up, -1.0f))));
+        kit_assert_rgb(sun->radiance, sheen_sun_irradiance(4.0, acos(0.8)), 1e-5f);
+    }
+    // Mitsuba 3.9 has the sky of its default, a summer afternoon in Tokyo, brightest over (0.0698, 0.9976).
+    const SheenScene *s = kit_scene(k, "<emitter type=\"sun\"/>");
+    Vec3 to_sun = v3_neg(s->lights[0].direction);
+    assert_true(to_sun.y > 0.0f && to_sun.z > 0.0f);
+    assert_float_equal(to_sun.x / to_sun.y, 0.0698f, 0.02f); // it was looked for in steps of two degrees
+    kit_scene(k, "<emitter type=\"sky\"><float name=\"turbidity\" value=\"1\"/></emitter>");
+    assert_non_null(strstr(k->warnings, "the turbidity 1 is outside [2, 10]"));
+    s = kit_scene(k, "<emitter type=\"sunsky\"><vector name=\"sun_direction\" z=\"-1\"/></emitter>");
+    assert_int_equal(s->n_lights, 0);
+    assert_non_null(strstr(k->warnings, "scene.xml:2:1: the sun of 'sunsky' is below the horizon"));
 }
 
 static void cameras(void **state)
@@ -821,8 +861,6 @@ static void cameras(void **state)
     assert_int_equal(c->width, 768);
     assert_non_null(strstr(k->warnings, "'telecentric' is not supported: a perspective camera stands in"));
 }
-
-// ---- the language -----------------------------------------------------------------------------------------------
 
 static void other_cameras(void **state)
 {
@@ -866,6 +904,8 @@ static void other_cameras(void **state)
     assert_int_equal(k->n_warnings, 2); // no light, and:
     assert_non_null(strstr(k->warnings, "the reconstruction filter 'mitchell' is not supported: 'box' stands in"));
 }
+
+// ---- the language -----------------------------------------------------------------------------------------------
 
 static void parameters_and_includes(void **state)
 {
@@ -937,6 +977,7 @@ int main(void)
         KIT_TEST(byte_pictures_are_decoded),
         KIT_TEST(lights),
         KIT_TEST(environments),
+        KIT_TEST(skies_and_suns),
         KIT_TEST(cameras),
         KIT_TEST(other_cameras),
         KIT_TEST(parameters_and_includes),
