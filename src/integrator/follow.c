@@ -29,6 +29,44 @@ bool sheen_lambertian_point(const SheenMaterial *material, const SurfacePoint *s
     return set_point(s, front, rgb(unit_or_zero(c.r), unit_or_zero(c.g), unit_or_zero(c.b)), out);
 }
 
+// A rough reflection at least so wide is nearly the same from everywhere, next to all else that a gather blurs.
+static const float wide_roughness = 0.2f;
+
+static bool goes_on(const BsdfSample *s)
+{
+    if (s->layer) return false;
+    return s->delta || s->roughness < wide_roughness;
+}
+
+Vec3 sheen_seen_from(const SurfacePoint *s, const Frame *frame, Vec3 wo)
+{
+    const float grazing = 1e-3f;
+    Vec3 wo_l = frame_to_local(frame, wo);
+    bool front = v3_dot(wo, s->ng) >= 0.0f;
+    if (front == (wo_l.z > 0.0f) && wo_l.z != 0.0f) return wo_l;
+    return v3_normalize(v3(wo_l.x, wo_l.y, front ? grazing : -grazing));
+}
+
+SheenStep sheen_step(const SurfacePoint *s, const Bsdf *bsdf, Vec3 wo, SheenSampler *sampler, Rgb *throughput,
+                     Ray *next, DiffusePoint *point)
+{
+    Frame frame = frame_from_normal(s->ns);
+    BsdfSample sample;
+    float lobe = sampler_1d(sampler);
+    Vec2 u = sheen_bsdf_is_delta(bsdf) ? v2(0.5f, 0.5f) : sampler_2d(sampler);
+    if (!sheen_bsdf_sample(bsdf, sheen_seen_from(s, &frame, wo), lobe, u, &sample)) return SHEEN_STEP_ENDS;
+    if (!rgb_finite(sample.weight) || rgb_is_black(sample.weight)) return SHEEN_STEP_ENDS;
+    if (!goes_on(&sample)) {
+        bool front = (v3_dot(wo, s->ng) >= 0.0f) != sample.transmit;
+        return set_point(s, front, sample.weight, point) ? SHEEN_STEP_SCATTERS : SHEEN_STEP_ENDS;
+    }
+    Vec3 wi = frame_to_world(&frame, sample.wi_l);
+    if (!(sample.wi_l.z * v3_dot(wi, s->ng) > 0.0f)) return SHEEN_STEP_ENDS;
+    *throughput = rgb_mul(*throughput, sample.weight);
+    *next = sheen_surface_ray(s, wi);
+    return SHEEN_STEP_GOES_ON;
+}
+
 void sheen_follow(const SheenWork *work, const Ray *ray, const Hit *hit, SheenSampler *sampler, uint64_t *specular_rays,
                   Followed *out)
 {
@@ -54,19 +92,9 @@ void sheen_follow(const SheenWork *work, const Ray *ray, const Hit *hit, SheenSa
         }
         Bsdf bsdf;
         sheen_bsdf_look_up(work->scene, &s, &bsdf);
-        sheen_bsdf_simplify(&bsdf);
-        if (!sheen_bsdf_is_delta(&bsdf)) {
-            out->scatters = sheen_diffuse_point(&s, &bsdf, wo, &out->point);
-            return;
-        }
-        if (out->specular++ == SHEEN_SPECULAR_MAX) return;
-        Frame frame = frame_from_normal(s.ns);
-        BsdfSample sample;
-        float lobe = sampler_1d(sampler);
-        if (!sheen_bsdf_sample(&bsdf, frame_to_local(&frame, wo), lobe, v2(0.5f, 0.5f), &sample)) return;
-        out->throughput = rgb_mul(out->throughput, sample.weight);
-        if (rgb_is_black(out->throughput)) return;
-        next = sheen_surface_ray(&s, frame_to_world(&frame, sample.wi_l));
+        SheenStep step = sheen_step(&s, &bsdf, wo, sampler, &out->throughput, &next, &out->point);
+        out->scatters = step == SHEEN_STEP_SCATTERS;
+        if (step != SHEEN_STEP_GOES_ON || out->specular++ == SHEEN_SPECULAR_MAX) return;
         sheen_accel_intersect(work->accel, &next, &next_hit);
         ray = &next;
         hit = &next_hit;

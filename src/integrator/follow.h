@@ -31,6 +31,28 @@ static inline const SheenMaterial *sheen_lambertian(const SheenScene *scene, con
 /** As sheen_diffuse_point, on a Lambertian surface. */
 bool sheen_lambertian_point(const SheenMaterial *material, const SurfacePoint *s, Vec3 wo, DiffusePoint *out);
 
+/** What becomes of a ray at a surface. */
+typedef enum SheenStep {
+    SHEEN_STEP_ENDS,    // absorbed
+    SHEEN_STEP_GOES_ON, // through a mirror, a pane, a hole, or along a narrow glossy reflection
+    SHEEN_STEP_SCATTERS // at a point that counts as diffuse
+} SheenStep;
+
+/**
+ * One way that light comes from, chosen by the sampler with the BSDF's own probabilities, so that blends, masks and
+ * layers are right in the mean. Mirrors, passage and glossy lobes narrower than roughness 0.2 are followed. All else
+ * counts as a Lambertian surface: diffuse lobes, wide glossy ones, and coats and highlights, narrow as they be, which
+ * would make caustics; its reflectance is one sample's weight, whose mean is the albedo for wo. Light that comes
+ * through from behind makes it a surface of the other side.
+ * @param wo          unit, toward the viewer
+ * @param throughput  is multiplied where the ray goes on
+ */
+SheenStep sheen_step(const SurfacePoint *s, const Bsdf *bsdf, Vec3 wo, SheenSampler *sampler, Rgb *throughput,
+                     Ray *next, DiffusePoint *point);
+
+/** wo in the local frame of s; a direction that the shading normal alone denies becomes grazing. */
+Vec3 sheen_seen_from(const SurfacePoint *s, const Frame *frame, Vec3 wo);
+
 /** Where a ray ended. */
 typedef struct Followed {
     bool scatters;     // `point` is set

@@ -53,6 +53,18 @@ static float pdf_lobe(const Bsdf *bsdf, const BsdfLobe *lobe, Vec3 wo, Vec3 wi)
     return lobe->ops->pdf(lobe, bsdf_way_wo(&way), wi) * density;
 }
 
+static float lobe_roughness(const BsdfLobe *lobe)
+{
+    switch (lobe->ops->class) {
+    case SHEEN_BSDF_DELTA:
+        return 0.0f;
+    case SHEEN_BSDF_GLOSSY:
+        return sqrtf(lobe->microfacet.alpha_u * lobe->microfacet.alpha_v);
+    default:
+        return 1.0f;
+    }
+}
+
 // The weight is that of the lobe alone, its share included.
 static bool sample_lobe(const Bsdf *bsdf, const BsdfLobe *lobe, Vec3 wo, float choice, Vec2 u, BsdfSample *out)
 {
@@ -71,6 +83,8 @@ static bool sample_lobe(const Bsdf *bsdf, const BsdfLobe *lobe, Vec3 wo, float c
     if (!sheen_bsdf_way_out(&way, out)) return false;
     out->weight = rgb_scale(out->weight, lobe->weight);
     out->transmit = out->wi_l.z * wo.z < 0.0f;
+    out->roughness = lobe_roughness(lobe);
+    out->layer = lobe->ops->layer;
     return true;
 }
 
@@ -292,8 +306,7 @@ float sheen_bsdf_roughness(const Bsdf *bsdf)
     float least = 1.0f;
     for (uint32_t i = 0; i < bsdf->n_lobes; ++i) {
         const BsdfLobe *lobe = &bsdf->lobes[i];
-        if (lobe->ops->class == SHEEN_BSDF_GLOSSY)
-            least = minf(least, sqrtf(lobe->microfacet.alpha_u * lobe->microfacet.alpha_v));
+        if (lobe->ops->class == SHEEN_BSDF_GLOSSY) least = minf(least, lobe_roughness(lobe));
     }
     return least;
 }

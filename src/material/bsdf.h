@@ -69,6 +69,9 @@ typedef struct BsdfSample {
     float pdf;     // solid angle density, 1/sr; for a delta lobe the probability of choosing it
     bool delta;    // a mirror or refraction: eval and pdf do not see it
     bool transmit; // wi_l is on the other side than wo_l
+    // Of the lobe that was drawn, by sheen_bsdf_sample_of alone:
+    float roughness; // alpha, of two axes the mean; 0 for a delta lobe, 1 for a diffuse one
+    bool layer;      // it only ever lies upon something else: a coat, a highlight
 } BsdfSample;
 
 /** Looks the textures up at a surface point. */

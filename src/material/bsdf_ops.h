@@ -12,6 +12,7 @@
 typedef struct BsdfOps {
     BsdfClass class;
     bool transmits; // a smooth kind that reaches the other side
+    bool layer;     // see BsdfSample
     Rgb (*eval)(const BsdfLobe *b, Vec3 wo, Vec3 wi);
     float (*pdf)(const BsdfLobe *b, Vec3 wo, Vec3 wi);
     /** wi_l, weight and pdf of *out are set; the rest is zero before. @return false when nothing is scattered */

@@ -51,6 +51,7 @@ static void phong_roughen(BsdfLobe *b, float least_alpha)
 }
 
 const BsdfOps sheen_lobe_phong = {.class = SHEEN_BSDF_GLOSSY,
+                                  .layer = true,
                                   .eval = phong_eval,
                                   .pdf = phong_pdf,
                                   .sample = phong_sample,

@@ -39,6 +39,7 @@ static void coat_roughen(BsdfLobe *b, float least_alpha)
 }
 
 const BsdfOps sheen_lobe_coat = {.class = SHEEN_BSDF_DELTA,
+                                 .layer = true,
                                  .lobes = coat_lobes,
                                  .albedo = coat_albedo,
                                  .importance = coat_importance,
@@ -73,6 +74,7 @@ static float rough_coat_importance(const BsdfLobe *b, Vec3 wo)
 }
 
 const BsdfOps sheen_lobe_rough_coat = {.class = SHEEN_BSDF_GLOSSY,
+                                       .layer = true,
                                        .eval = rough_coat_eval,
                                        .pdf = microfacet_lobe_pdf,
                                        .sample = rough_coat_sample,

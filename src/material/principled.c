@@ -232,6 +232,7 @@ static void clearcoat_roughen(BsdfLobe *b, float least_alpha)
 }
 
 const BsdfOps sheen_lobe_principled_clearcoat = {.class = SHEEN_BSDF_GLOSSY,
+                                                 .layer = true,
                                                  .eval = clearcoat_eval,
                                                  .pdf = clearcoat_pdf,
                                                  .sample = clearcoat_sample,

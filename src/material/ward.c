@@ -67,6 +67,7 @@ static float ward_importance(const BsdfLobe *b, Vec3 wo)
 }
 
 const BsdfOps sheen_lobe_ward = {.class = SHEEN_BSDF_GLOSSY,
+                                 .layer = true,
                                  .eval = ward_eval,
                                  .pdf = ward_pdf,
                                  .sample = ward_sample,
