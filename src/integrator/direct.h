@@ -12,6 +12,27 @@ typedef struct LightNumbers {
     Vec2 place;
 } LightNumbers;
 
+/** How the light samples of a shading point are shared out. */
+typedef struct LightPlan {
+    uint32_t each;    // lights that are asked one after another; 0: one is chosen for each sample
+    uint32_t samples; // of each light, but 1 of those without size; or in all
+} LightPlan;
+
+LightPlan sheen_light_plan(const SheenWork *work);
+
+/** Key of the random numbers of a shading point's light samples. */
+uint32_t sheen_light_key(const SheenWork *work, uint32_t branch);
+/** Number of the first of them in the key's sequence; they follow each other. */
+uint32_t sheen_light_index(const SheenWork *work, LightPlan plan, uint32_t pixel, uint32_t sample);
+
+/** The numbers of one light sample. @param light  that is asked; SHEEN_NONE: one is chosen */
+static inline LightNumbers sheen_light_numbers(uint32_t key, uint32_t index, uint32_t light)
+{
+    SheenSampler sampler = sampler_make(key ^ (light == SHEEN_NONE ? 0 : hash_u32(light + 1)), index);
+    float choice = hash_to_unit(key + index * 0x9e3779b9u); // steps of the golden ratio
+    return (LightNumbers){light, choice, sampler_2d(&sampler)};
+}
+
 /** Buffers of one worker. */
 typedef struct DirectScratch {
     Ray *rays;               // [capacity]

@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrator/follow.h"
 
-// A point on the side of a surface that wo is on. @return false when it is black
-static inline bool set_point(const SurfacePoint *s, bool front, Rgb reflectance, DiffusePoint *out)
+bool sheen_set_point(const SurfacePoint *s, bool front, Rgb reflectance, DiffusePoint *out)
 {
     Vec3 ng = front ? s->ng : v3_neg(s->ng), n = front ? s->ns : v3_neg(s->ns);
     *out = (DiffusePoint){s->p, sheen_surface_leave(s, ng), ng, n, reflectance};
     return !rgb_is_black(reflectance);
-}
-
-bool sheen_diffuse_point(const SurfacePoint *s, const Bsdf *bsdf, Vec3 wo, DiffusePoint *out)
-{
-    bool front = v3_dot(wo, s->ng) >= 0.0f;
-    return set_point(s, front, sheen_bsdf_diffuse(bsdf, v3(0.0f, 0.0f, front ? 1.0f : -1.0f), NULL), out);
 }
 
 static float unit_or_zero(float x) // a NaN becomes 0
@@ -26,7 +19,7 @@ bool sheen_lambertian_point(const SheenMaterial *material, const SurfacePoint *s
     if (!front && !material->two_sided) return false;
     const SheenTexture *t = &material->reflectance;
     Rgb c = t->kind == SHEEN_TEXTURE_CONSTANT ? t->value : sheen_texture_eval(t, s->uv);
-    return set_point(s, front, rgb(unit_or_zero(c.r), unit_or_zero(c.g), unit_or_zero(c.b)), out);
+    return sheen_set_point(s, front, rgb(unit_or_zero(c.r), unit_or_zero(c.g), unit_or_zero(c.b)), out);
 }
 
 // A rough reflection at least so wide is nearly the same from everywhere, next to all else that a gather blurs.
@@ -58,7 +51,7 @@ SheenStep sheen_step(const SurfacePoint *s, const Bsdf *bsdf, Vec3 wo, SheenSamp
     if (!rgb_finite(sample.weight) || rgb_is_black(sample.weight)) return SHEEN_STEP_ENDS;
     if (!goes_on(&sample)) {
         bool front = (v3_dot(wo, s->ng) >= 0.0f) != sample.transmit;
-        return set_point(s, front, sample.weight, point) ? SHEEN_STEP_SCATTERS : SHEEN_STEP_ENDS;
+        return sheen_set_point(s, front, sample.weight, point) ? SHEEN_STEP_SCATTERS : SHEEN_STEP_ENDS;
     }
     Vec3 wi = frame_to_world(&frame, sample.wi_l);
     if (!(sample.wi_l.z * v3_dot(wi, s->ng) > 0.0f)) return SHEEN_STEP_ENDS;

@@ -18,8 +18,8 @@ typedef struct DiffusePoint {
     Rgb reflectance; // albedo
 } DiffusePoint;
 
-/** The same for a surface seen along wo (unit, toward the viewer). @return false when it is black from there. */
-bool sheen_diffuse_point(const SurfacePoint *s, const Bsdf *bsdf, Vec3 wo, DiffusePoint *out);
+/** Makes the point on the front or the back of a surface. @return false when it is black */
+bool sheen_set_point(const SurfacePoint *s, bool front, Rgb reflectance, DiffusePoint *out);
 
 /** @return the material of a surface that is Lambertian and nothing else, which needs no BSDF; NULL for others. */
 static inline const SheenMaterial *sheen_lambertian(const SheenScene *scene, const SurfacePoint *s)
@@ -28,7 +28,7 @@ static inline const SheenMaterial *sheen_lambertian(const SheenScene *scene, con
     return m->kind == SHEEN_MATERIAL_DIFFUSE ? m : NULL;
 }
 
-/** As sheen_diffuse_point, on a Lambertian surface. */
+/** The same on a Lambertian surface seen along wo (unit, toward the viewer). @return false when it is black. */
 bool sheen_lambertian_point(const SheenMaterial *material, const SurfacePoint *s, Vec3 wo, DiffusePoint *out);
 
 /** What becomes of a ray at a surface. */

@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { KEY_LIGHT = 0x11c7 };
-
 void sheen_uncovered_free(Uncovered *u)
 {
     free(u->points);
@@ -34,6 +32,7 @@ typedef struct Shader {
     Visibility visibility;
     DirectScratch direct;
     DiffusePoint *points; // [capacity]
+    uint32_t *at;         // which of the shading points they are
     uint32_t *keys;       // of the points' random numbers
     uint32_t *indices;    // of the points' first light samples
     LightNumbers *numbers;
@@ -55,6 +54,7 @@ typedef struct ShadeTask {
 static void free_points(Shader *s)
 {
     free(s->points);
+    free(s->at);
     free(s->keys);
     free(s->indices);
     free(s->numbers);
@@ -66,11 +66,12 @@ static bool reserve(Shader *s, size_t n)
     if (n <= s->capacity) return true;
     free_points(s);
     s->points = malloc(n * sizeof *s->points);
+    s->at = malloc(n * sizeof *s->at);
     s->keys = malloc(n * sizeof *s->keys);
     s->indices = malloc(n * sizeof *s->indices);
     s->numbers = malloc(n * sizeof *s->numbers);
     s->irradiance = malloc(n * sizeof *s->irradiance);
-    s->capacity = s->points && s->keys && s->indices && s->numbers && s->irradiance ? n : 0;
+    s->capacity = s->points && s->at && s->keys && s->indices && s->numbers && s->irradiance ? n : 0;
     return s->capacity > 0 && sheen_direct_reserve(&s->direct, n);
 }
 
@@ -95,36 +96,11 @@ static void add_reflected(const SheenWork *work, const ShadingPoint *p, Rgb E, S
     film_add(film, aov, p->pixel % work->width, p->pixel / work->width, value);
 }
 
-// Numbers of sample j of each point, asked of `light`, or of one that is chosen. Without branches or calls: the
-// compiler makes vector instructions of it.
+// Without branches or calls: the compiler makes vector instructions of it.
 static void light_numbers(size_t n, const uint32_t keys[], const uint32_t indices[], uint32_t j, uint32_t light,
                           LightNumbers out[])
 {
-    uint32_t salt = light == SHEEN_NONE ? 0 : hash_u32(light + 1);
-    for (size_t i = 0; i < n; ++i) {
-        SheenSampler sampler = sampler_make(keys[i] ^ salt, indices[i] + j);
-        out[i].light = light;
-        out[i].choice = hash_to_unit(keys[i] + sampler.index * 0x9e3779b9u); // steps of the golden ratio
-        out[i].place = sampler_2d(&sampler);
-    }
-}
-
-/** How the light samples of a shading point are shared out. */
-typedef struct LightPlan {
-    uint32_t each;    // lights that are asked one after another; 0: one is chosen for each sample
-    uint32_t samples; // of each light, but 1 of those without size; or in all
-} LightPlan;
-
-// Few lights are all asked: a choice goes by what they would send if nothing was in the way, and is noise wherever the
-// strongest is hidden. Two samples each cost less than the choice did and leave half its error.
-static LightPlan plan_lights(const SheenWork *work)
-{
-    enum { FEW = 4 };
-    uint32_t n = sheen_lights_count(work->lights), wanted = work->options.light_samples, deltas = 0;
-    if (n > FEW || (wanted > 0 && wanted < n)) return (LightPlan){0, wanted ? wanted : FEW};
-    if (wanted == 0) return (LightPlan){n, n > 1 ? 2 : 1};
-    for (uint32_t i = 0; i < n; ++i) deltas += sheen_light_is_delta(work->lights, i);
-    return (LightPlan){n, deltas < n ? (wanted - deltas) / (n - deltas) : 1};
+    for (size_t i = 0; i < n; ++i) out[i] = sheen_light_numbers(keys[i], indices[i] + j, light);
 }
 
 static void ask(const SheenWork *work, size_t n, uint32_t light, uint32_t samples, Shader *s)
@@ -138,22 +114,26 @@ static void ask(const SheenWork *work, size_t n, uint32_t light, uint32_t sample
 
 static bool direct_light(const SheenWork *work, Shader *s, SheenFilm *film)
 {
-    size_t n = s->visibility.n_points;
+    size_t n = s->visibility.n_points, m = 0;
     const ShadingPoint *points = s->visibility.points;
     if (n == 0 || sheen_lights_count(work->lights) == 0) return true;
     if (!reserve(s, n)) return false;
-    LightPlan plan = plan_lights(work);
+    LightPlan plan = sheen_light_plan(work);
     for (size_t i = 0; i < n; ++i) {
-        uint32_t x = points[i].pixel % work->width, y = points[i].pixel / work->width;
-        s->points[i] = points[i].point;
-        s->irradiance[i] = rgb_gray(0.0f);
-        s->keys[i] = hash_combine(work->options.seed ^ KEY_LIGHT, points[i].branch);
-        s->indices[i] = sheen_sample_index(x, y, work->options.spp * plan.samples, points[i].sample * plan.samples);
+        if (points[i].lit) continue;
+        s->points[m] = points[i].point;
+        s->irradiance[m] = rgb_gray(0.0f);
+        s->at[m] = (uint32_t)i;
+        s->keys[m] = sheen_light_key(work, points[i].branch);
+        s->indices[m++] = sheen_light_index(work, plan, points[i].pixel, points[i].sample);
     }
-    if (plan.each == 0) ask(work, n, SHEEN_NONE, plan.samples, s);
+    if (plan.each == 0) ask(work, m, SHEEN_NONE, plan.samples, s);
     for (uint32_t light = 0; light < plan.each; ++light)
-        ask(work, n, light, sheen_light_is_delta(work->lights, light) ? 1 : plan.samples, s);
-    for (size_t i = 0; i < n; ++i) add_reflected(work, &points[i], s->irradiance[i], SHEEN_AOV_DIRECT, film, &s->stats);
+        ask(work, m, light, sheen_light_is_delta(work->lights, light) ? 1 : plan.samples, s);
+    for (size_t i = 0; i < m; ++i) {
+        const ShadingPoint *p = &points[s->at[i]];
+        add_reflected(work, p, s->irradiance[i], p->gathered ? SHEEN_AOV_INDIRECT : SHEEN_AOV_DIRECT, film, &s->stats);
+    }
     return true;
 }
 

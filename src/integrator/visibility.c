@@ -81,37 +81,39 @@ static bool push_camera_rays(const SheenWork *work, const SheenEye *eye, const T
                     sampler_make(hash_u32(work->options.seed), sheen_sample_index(x, y, work->options.spp, s));
                 Vec2 u = sampler_2d(&sampler);
                 float px = (float)x + u.x, py = (float)y + u.y;
-                EyeRay r = {sheen_eye_ray(eye, px, py), rgb_gray(1.0f), 0.0f, pixel, s, 1, 0};
+                EyeRay r = {sheen_eye_ray(eye, px, py), rgb_gray(1.0f), .pixel = pixel, .sample = s, .branch = 1};
                 if (sheen_eye_has_lens(eye)) r.ray = sheen_eye_lens_ray(eye, px, py, sampler_2d(&sampler));
                 if (!push_ray(v, 0, &r)) return false;
             }
     return true;
 }
 
-// Sends a ray on along its delta lobes.
-static bool split(const SheenWork *work, const EyeRay *r, const SurfacePoint *s, const Bsdf *bsdf, int list,
-                  Visibility *v)
+static SheenSampler sampler_of(const SheenWork *work, const EyeRay *r)
 {
-    if (r->depth >= SHEEN_SPECULAR_MAX) return true;
-    Frame frame = frame_from_normal(s->ns);
-    Vec3 wo_l = frame_to_local(&frame, v3_neg(r->ray.d));
+    uint32_t key = hash_combine(hash_combine(work->options.seed, r->pixel), r->branch + 7919u * r->depth);
+    return sampler_make(key, r->sample);
+}
+
+// Sends a ray on with the i-th way of its branching. @return false when out of memory
+static bool send(const EyeRay *r, const Ray *ray, Rgb weight, uint32_t i, EyeRay *next, int list, Visibility *v)
+{
+    next->throughput = rgb_mul(r->throughput, weight);
+    if (!(rgb_max(next->throughput) > throughput_min)) return true;
+    next->ray = *ray;
+    next->branch = 2 * r->branch + i;
+    next->depth = r->depth + 1;
+    return push_ray(v, list, next);
+}
+
+// Sends a ray on along its delta lobes.
+static bool split(const EyeRay *r, const SeenSurface *s, int list, Visibility *v)
+{
     BsdfSample lobes[SHEEN_BSDF_MAX_DELTA];
-    int n;
-    if (r->depth < SPLIT_DEPTH) {
-        n = sheen_bsdf_delta_lobes(bsdf, wo_l, lobes);
-    } else {
-        SheenSampler sampler = sampler_make(
-            hash_combine(hash_combine(work->options.seed, r->pixel), r->branch + 7919u * r->depth), r->sample);
-        n = sheen_bsdf_sample(bsdf, wo_l, sampler_1d(&sampler), v2(0.5f, 0.5f), &lobes[0]);
-    }
+    int n = sheen_bsdf_delta_lobes(&s->bsdf, s->wo_l, lobes);
     for (int i = 0; i < n; ++i) {
         EyeRay next = *r;
-        next.throughput = rgb_mul(r->throughput, lobes[i].weight);
-        if (!(rgb_max(next.throughput) > throughput_min)) continue;
-        next.ray = sheen_surface_ray(s, frame_to_world(&frame, lobes[i].wi_l));
-        next.branch = 2 * r->branch + (uint32_t)i;
-        ++next.depth;
-        if (!push_ray(v, list, &next)) return false;
+        Ray ray = sheen_surface_ray(&s->s, frame_to_world(&s->frame, lobes[i].wi_l));
+        if (!send(r, &ray, lobes[i].weight, (uint32_t)i, &next, list, v)) return false;
     }
     return true;
 }
@@ -149,35 +151,89 @@ static void add_light(const SheenWork *work, const EyeRay *r, Rgb radiance, floa
     film_add(film, SHEEN_AOV_DIRECT, r->pixel % work->width, r->pixel / work->width, value);
 }
 
-static bool arrive(const SheenWork *work, const SheenEye *eye, EyeRay *r, const Hit *hit, int next, float weight,
+// Sends a ray on along the glossy part. What it sees is blurred: the pixel widens.
+static bool send_glossy(const SheenWork *work, const EyeRay *r, const SeenSurface *s, int list, Visibility *v)
+{
+    const float blur = 1.0f / 32.0f; // of the lobe's width that may be told apart in what it shows
+    EyeRay next = *r;
+    Ray ray;
+    Rgb weight;
+    float roughness;
+    SheenSampler sampler = sampler_of(work, r);
+    if (!sheen_glossy_ray(s, &sampler, &ray, &weight, &roughness, &next.origin)) return true;
+    next.gathered = next.competes = true;
+    next.blur += blur * roughness;
+    return send(r, &ray, weight, SHEEN_BSDF_MAX_DELTA, &next, list, v);
+}
+
+static bool add_point(const EyeRay *r, const DiffusePoint *point, bool lit, Visibility *v)
+{
+    ShadingPoint p = {*point, r->throughput, r->footprint, r->pixel, r->sample, r->branch, lit, r->gathered};
+    return push_point(v, &p);
+}
+
+// A surface in full: all its delta lobes, a ray along the glossy part, light samples, and a point for the diffuse part.
+static bool see(const SheenWork *work, const EyeRay *r, const SeenSurface *s, int list, float weight, SheenFilm *film,
+                Visibility *v, SheenStats *stats)
+{
+    unsigned classes = sheen_bsdf_classes(&s->bsdf);
+    if ((classes & SHEEN_BSDF_DELTA) && !split(r, s, list, v)) return false;
+    if ((classes & SHEEN_BSDF_GLOSSY) && !send_glossy(work, r, s, list, v)) return false;
+    if ((classes & SHEEN_BSDF_SMOOTH) && film) {
+        uint32_t index = sheen_light_index(work, sheen_light_plan(work), r->pixel, r->sample);
+        Rgb L = sheen_glossy_lit(work, s, sheen_light_key(work, r->branch), index, stats);
+        add_light(work, r, L, weight, film, stats);
+    }
+    DiffusePoint point;
+    if (!(classes & SHEEN_BSDF_DIFFUSE)) return true;
+    Rgb diffuse = sheen_bsdf_diffuse(&s->bsdf, s->wo_l, NULL);
+    if (!sheen_set_point(&s->s, s->wo_l.z > 0.0f, diffuse, &point)) return true;
+    return add_point(r, &point, true, v);
+}
+
+// What the light that a ray found is worth: on surfaces that emit and beyond all.
+static Rgb found(const SheenWork *work, const EyeRay *r, const SurfacePoint *s)
+{
+    Vec3 wo = v3_neg(r->ray.d);
+    if (r->competes)
+        return s ? sheen_glossy_found(work, &r->origin, s, wo) : sheen_glossy_found_sky(work, &r->origin, r->ray.d);
+    return s ? sheen_emitted(work->scene, s, wo) : sheen_environment(work->scene, r->ray.d);
+}
+
+static bool arrive(const SheenWork *work, const SheenEye *eye, EyeRay *r, const Hit *hit, int list, float weight,
                    SheenFilm *film, Visibility *v, SheenStats *stats)
 {
     if (hit->shape == SHEEN_NONE) {
-        if (film) add_light(work, r, sheen_environment(work->scene, r->ray.d), weight, film, stats);
+        if (film) add_light(work, r, found(work, r, NULL), weight, film, stats);
         return true;
     }
-    SurfacePoint s;
-    sheen_surface_from_hit(work->scene, &r->ray, hit, &s);
+    SeenSurface seen;
+    SurfacePoint *s = &seen.s;
+    sheen_surface_from_hit(work->scene, &r->ray, hit, s);
     Vec3 wo = v3_neg(r->ray.d);
     r->length += hit->t;
+    r->blurred += r->blur * hit->t;
+    r->footprint = sheen_eye_footprint(eye, r->length) + r->blurred;
     if (film) {
-        Rgb emitted = sheen_emitted(work->scene, &s, wo);
+        Rgb emitted = found(work, r, s);
         if (!rgb_is_black(emitted)) add_light(work, r, emitted, weight, film, stats);
-        if (r->depth == 0) add_first_hit(work, r, hit, &s, weight, film);
+        if (r->depth == 0) add_first_hit(work, r, hit, s, weight, film);
     }
-    ShadingPoint p = {.throughput = r->throughput, .pixel = r->pixel, .sample = r->sample, .branch = r->branch};
-    const SheenMaterial *lambertian = sheen_lambertian(work->scene, &s);
-    if (lambertian) {
-        if (!sheen_lambertian_point(lambertian, &s, wo, &p.point)) return true;
-    } else {
-        Bsdf bsdf;
-        sheen_bsdf_look_up(work->scene, &s, &bsdf);
-        sheen_bsdf_simplify(&bsdf);
-        if (sheen_bsdf_is_delta(&bsdf)) return split(work, r, &s, &bsdf, next, v);
-        if (!sheen_diffuse_point(&s, &bsdf, wo, &p.point)) return true;
-    }
-    p.footprint = sheen_eye_footprint(eye, r->length);
-    return push_point(v, &p);
+    r->competes = false;
+    bool last = r->gathered && work->options.bounces == 0; // no light comes from another scattering
+    DiffusePoint point;
+    const SheenMaterial *lambertian = sheen_lambertian(work->scene, s);
+    if (lambertian) return last || !sheen_lambertian_point(lambertian, s, wo, &point) || add_point(r, &point, false, v);
+    sheen_seen_surface(work, wo, &seen);
+    if (!r->gathered && r->depth < SPLIT_DEPTH) return see(work, r, &seen, list, weight, film, v, stats);
+    SheenSampler sampler = sampler_of(work, r);
+    Ray ray;
+    EyeRay next = *r;
+    Rgb through = rgb_gray(1.0f);
+    SheenStep step = sheen_step(s, &seen.bsdf, wo, &sampler, &through, &ray, &point);
+    if (step == SHEEN_STEP_SCATTERS) return last || add_point(r, &point, false, v);
+    if (step == SHEEN_STEP_ENDS || r->depth >= SHEEN_SPECULAR_MAX) return true;
+    return send(r, &ray, through, 0, &next, list, v);
 }
 
 bool sheen_visibility_trace(const SheenWork *work, const Tile *tile, uint32_t first, uint32_t n, SheenFilm *film,

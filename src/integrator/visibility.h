@@ -3,7 +3,7 @@
 #ifndef SHEEN_INTEGRATOR_VISIBILITY_H
 #define SHEEN_INTEGRATOR_VISIBILITY_H
 
-#include "integrator/follow.h"
+#include "integrator/glossy.h"
 
 /** A point that a pixel sees. */
 typedef struct ShadingPoint {
@@ -13,6 +13,8 @@ typedef struct ShadingPoint {
     uint32_t pixel;  // y * width + x
     uint32_t sample; // sample of the pixel
     uint32_t branch; // which of the sample's ways through mirrors and glass
+    bool lit;        // its direct light is in the film
+    bool gathered;   // seen along a glossy reflection: all its light is indirect
 } ShadingPoint;
 
 /** A rectangle of the picture. */
@@ -28,8 +30,13 @@ Tile sheen_tile(const SheenWork *work, uint32_t index);
 typedef struct EyeRay {
     Ray ray;
     Rgb throughput;
-    float length; // of the way so far
+    float length;        // of the way so far
+    float blur, blurred; // by glossy reflections: what a pixel grows by a metre, and has grown
+    float footprint;     // side of a pixel's square where the ray arrived, metres
     uint32_t pixel, sample, branch, depth;
+    bool gathered; // went along a glossy reflection
+    bool competes; // the last of its way did, from `origin`
+    GlossyOrigin origin;
 } EyeRay;
 
 /** Buffers and result of one worker. */
@@ -48,9 +55,10 @@ void sheen_visibility_free(Visibility *v);
 
 /**
  * Traces samples [first, first + n) of each pixel of a tile. v->points then holds what they see, sample by sample.
- * At glass both ways are followed three times, after that one of them is chosen.
- * @param film  emitted light and the sky are added to the colour, weighted by 1 / spp, and first hits to the layers;
- *              NULL to find the points only
+ * At glass and below coats all ways are followed three times, after that one of them is chosen. Of a glossy
+ * reflection one ray is followed; behind it, as behind three branchings, surfaces are what sheen_step makes of them.
+ * @param film  emitted light, the sky and what light samples find on surfaces that are not Lambert's alone are added
+ *              to the colour, weighted by 1 / spp, and first hits to the layers; NULL to find the points only
  * @return false when out of memory
  */
 bool sheen_visibility_trace(const SheenWork *work, const Tile *tile, uint32_t first, uint32_t n, SheenFilm *film,

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integrator/glossy.h"
+
+void sheen_seen_surface(const SheenWork *work, Vec3 wo, SeenSurface *out)
+{
+    out->frame = frame_from_normal(out->s.ns);
+    out->wo_l = sheen_seen_from(&out->s, &out->frame, wo);
+    out->side = v3_dot(wo, out->s.ng) >= 0.0f ? out->s.ng : v3_neg(out->s.ng);
+    sheen_bsdf_look_up(work->scene, &out->s, &out->bsdf);
+    out->both_sides = sheen_bsdf_transmits(&out->bsdf);
+}
+
+// Weight of a sample of density a where another technique would have drawn it with density b. Source: veach1997 ch. 9
+static float power_heuristic(float a, float b)
+{
+    float ratio = b / a;
+    return 1.0f / (1.0f + ratio * ratio);
+}
+
+// Chooses a light; where light from both sides is scattered a coin decides on the side first.
+// @return the probability, of the light by either way
+static float choose_light(const SheenLights *lights, const SeenSurface *v, float u, uint32_t *light)
+{
+    if (!v->both_sides) return sheen_lights_choose(lights, v->s.p, v->side, &u, light);
+    bool other = u >= 0.5f;
+    u = other ? 2.0f * u - 1.0f : 2.0f * u;
+    Vec3 back = v3_neg(v->side);
+    float chosen = sheen_lights_choose(lights, v->s.p, other ? back : v->side, &u, light);
+    if (!(chosen > 0.0f)) return 0.0f;
+    return 0.5f * (chosen + sheen_lights_choose_probability(lights, v->s.p, other ? v->side : back, *light));
+}
+
+// Light samples that go to `light` from a point, in the mean.
+static float samples_expected(const SheenLights *lights, LightPlan plan, const GlossyOrigin *o, uint32_t light)
+{
+    if (plan.each > 0) return (float)plan.samples;
+    float p = sheen_lights_choose_probability(lights, o->p, o->side, light);
+    if (o->both_sides) p = 0.5f * (p + sheen_lights_choose_probability(lights, o->p, v3_neg(o->side), light));
+    return (float)plan.samples * p;
+}
+
+// One of `samples` light samples.
+static Rgb light_sample(const SheenWork *work, const SeenSurface *v, LightNumbers numbers, uint32_t samples,
+                        SheenStats *stats)
+{
+    uint32_t light = numbers.light;
+    float choice = 1.0f;
+    LightSample ls;
+    if (light == SHEEN_NONE) choice = choose_light(work->lights, v, numbers.choice, &light);
+    if (!(choice > 0.0f) || !sheen_light_sample(work->lights, light, v->s.p, numbers.place, &ls)) return rgb_gray(0.0f);
+    Vec3 wi_l = frame_to_local(&v->frame, ls.wi);
+    if (!(wi_l.z * v3_dot(ls.wi, v->s.ng) > 0.0f)) return rgb_gray(0.0f);
+    Rgb f = sheen_bsdf_eval_of(&v->bsdf, SHEEN_BSDF_GLOSSY, v->wo_l, wi_l);
+    if (!ls.delta && !rgb_is_black(f)) {
+        float found = sheen_bsdf_pdf_of(&v->bsdf, SHEEN_BSDF_GLOSSY, v->wo_l, wi_l);
+        f = rgb_scale(f, power_heuristic((float)samples * choice * ls.pdf, found));
+    }
+    f = rgb_add(f, sheen_bsdf_eval_of(&v->bsdf, SHEEN_BSDF_DIFFUSE, v->wo_l, wi_l));
+    if (rgb_is_black(f)) return f;
+    Ray shadow = sheen_shadow_ray(&v->s, &ls);
+    ++stats->rays_shadow;
+    if (sheen_accel_occluded(work->accel, &shadow)) return rgb_gray(0.0f);
+    return rgb_scale(rgb_mul(f, ls.radiance), 1.0f / (choice * (float)samples));
+}
+
+Rgb sheen_glossy_lit(const SheenWork *work, const SeenSurface *v, uint32_t key, uint32_t index, SheenStats *stats)
+{
+    Rgb L = rgb_gray(0.0f);
+    LightPlan plan = sheen_light_plan(work);
+    if (sheen_lights_count(work->lights) == 0) return L;
+    uint32_t turns = plan.each ? plan.each : 1;
+    for (uint32_t turn = 0; turn < turns; ++turn) {
+        uint32_t light = plan.each ? turn : SHEEN_NONE;
+        uint32_t n = plan.each && sheen_light_is_delta(work->lights, light) ? 1 : plan.samples;
+        for (uint32_t j = 0; j < n; ++j)
+            L = rgb_add(L, light_sample(work, v, sheen_light_numbers(key, index + j, light), n, stats));
+    }
+    return L;
+}
+
+bool sheen_glossy_ray(const SeenSurface *v, SheenSampler *sampler, Ray *ray, Rgb *weight, float *roughness,
+                      GlossyOrigin *origin)
+{
+    BsdfSample sample;
+    float lobe = sampler_1d(sampler);
+    if (!sheen_bsdf_sample_of(&v->bsdf, SHEEN_BSDF_GLOSSY, v->wo_l, lobe, sampler_2d(sampler), &sample)) return false;
+    Vec3 wi = frame_to_world(&v->frame, sample.wi_l);
+    if (!(sample.wi_l.z * v3_dot(wi, v->s.ng) > 0.0f) || !rgb_finite(sample.weight)) return false;
+    *ray = sheen_surface_ray(&v->s, wi);
+    *weight = sample.weight;
+    *roughness = sample.roughness;
+    *origin = (GlossyOrigin){v->s.p, v->side, sample.pdf, v->both_sides};
+    return true;
+}
+
+static float share_found(const SheenWork *work, const GlossyOrigin *o, uint32_t light, float pdf_light)
+{
+    return power_heuristic(o->pdf, samples_expected(work->lights, sheen_light_plan(work), o, light) * pdf_light);
+}
+
+Rgb sheen_glossy_found(const SheenWork *work, const GlossyOrigin *origin, const SurfacePoint *s, Vec3 wo)
+{
+    Rgb L = sheen_emitted(work->scene, s, wo);
+    uint32_t light = sheen_lights_of_shape(work->lights, s->shape);
+    if (rgb_is_black(L) || light == SHEEN_NONE) return L;
+    return rgb_scale(L, share_found(work, origin, light, sheen_light_pdf_hit(work->lights, light, origin->p, s)));
+}
+
+Rgb sheen_glossy_found_sky(const SheenWork *work, const GlossyOrigin *origin, Vec3 wi)
+{
+    Rgb all = sheen_environment(work->scene, wi), soft = sheen_environment_soft(work->lights, wi);
+    uint32_t light = sheen_lights_environment(work->lights);
+    if (rgb_is_black(all) || light == SHEEN_NONE) return all;
+    float share = share_found(work, origin, light, sheen_light_pdf_escape(work->lights, light, wi));
+    return rgb_mad(soft, share, rgb_sub(all, soft)); // the soft part is left to rays
+}
