@@ -351,6 +351,60 @@ static void test_bytes(void **state)
     sheen_irradiance_cache_destroy(&c);
 }
 
+// A dark record whose own radius is a third of the least: beside an open one it decides within its own reach alone;
+// where nothing else reaches it is better than nothing, but a point wants two of its kind.
+static void test_enlarged_record(void **state)
+{
+    (void)state;
+    SheenIrradianceCache *c = cache_begin(false);
+    Vec3 n = v3(0, 0, 1);
+    IrradianceRecord dark = flat_record(v3(0, 0, 0), n, 0.3f, 0.0f),
+                     open = flat_record(v3(0.35f * A, 0, 0), n, 1.0f, 1.0f);
+    dark.R_min = 0.3f;
+    dark.R_sure = 0.1f;
+    insert(c, &dark);
+    Contributors found;
+    sheen_irradiance_cache_find(c, v3(-0.2f * A, 0, 0), n, 0.0f, &found);
+    assert_int_equal(found.n, 1);
+    assert_int_equal(found.cover, 1);
+    insert(c, &dark);
+    sheen_irradiance_cache_find(c, v3(-0.2f * A, 0, 0), n, 0.0f, &found);
+    assert_int_equal(found.cover, 2);
+    insert(c, &open);
+    // Between the dark record's own reach and its enlarged one the open record says what is there, to a thousandth.
+    sheen_irradiance_cache_find(c, v3(0.2f * A, 0, 0), n, 0.0f, &found);
+    assert_int_equal(found.n, 3);
+    assert_true(sheen_irradiance_cache_interpolate(c, &found, v3(0.2f * A, 0, 0), n).g > 0.997f);
+    // At the dark record it is dark.
+    sheen_irradiance_cache_find(c, v3(1e-4f * A, 0, 0), n, 0.0f, &found);
+    assert_true(sheen_irradiance_cache_interpolate(c, &found, v3(1e-4f * A, 0, 0), n).g < 0.01f);
+    sheen_irradiance_cache_destroy(&c);
+}
+
+// A record in a slit, far narrower than what the picture resolves, leaves its neighbors their radii; a contact's does
+// not.
+static void test_slivers_clamp_nobody(void **state)
+{
+    (void)state;
+    for (int sliver = 0; sliver < 2; ++sliver) {
+        SheenIrradianceCache *c = cache_begin(true);
+        Vec3 n = v3(0, 0, 1);
+        IrradianceRecord open = flat_record(v3(0.1f, 0, 0), n, 1.0f, 1.0f),
+                         small = flat_record(v3(0, 0, 0), n, 0.2f, 0.0f);
+        small.R_min = 0.2f;
+        small.R_sure = sliver ? 0.02f : 0.1f;
+        open.R_min = 0.2f;
+        insert(c, &open);
+        insert(c, &small);
+        insert(c, &open);
+        // R_min of the small record plus the distance.
+        assert_true(fabsf(c->records[0].R - (sliver ? 1.0f : 0.3f)) < 1e-6f);
+        assert_true(fabsf(c->records[2].R - (sliver ? 1.0f : 0.3f)) < 1e-6f);
+        assert_true(c->records[1].R == 0.2f);
+        sheen_irradiance_cache_destroy(&c);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -367,6 +421,8 @@ int main(void)
         cmocka_unit_test(test_clamping_keeps_the_triangle_inequality),
         cmocka_unit_test(test_clamping_in_either_order),
         cmocka_unit_test(test_without_clamping_radii_stay),
+        cmocka_unit_test(test_enlarged_record),
+        cmocka_unit_test(test_slivers_clamp_nobody),
         cmocka_unit_test(test_bytes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
