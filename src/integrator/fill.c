@@ -13,7 +13,7 @@ static const float reach_min_px = 4.0f, reach_max_px = 25.0f;
 // The least own radius of a record, in units of its enlarged one.
 static const float sure_min = 0.1f;
 // A gather spends more rays until the standard error of its irradiance is expected to be so small.
-static const float gather_error = 0.025f;
+static const float gather_error = 0.03f;
 enum {
     LIGHT_SAMPLES = 1,  // at each hit of a gather: the best value per ray of 1, 2 and 4
     EXTENSIONS_MAX = 2, // vertices by which near hits are moved on
