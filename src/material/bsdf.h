@@ -150,13 +150,8 @@ float sheen_bsdf_roughness(const Bsdf *bsdf);
  */
 void sheen_bsdf_roughen(Bsdf *bsdf, float least_alpha);
 
-/**
- * Replaces the BSDF by the simplest relative of its heaviest part: a Lambertian surface, a mirror, glass, or passage.
- * For integrators that know diffuse surfaces and delta lobes only.
+/** @return false when nothing of a material, anywhere, is a mirror, glass, or metal, rough or not, or lets light pass.
  */
-void sheen_bsdf_simplify(Bsdf *bsdf);
-
-/** @return whether sheen_bsdf_simplify may leave a delta lobe of this material, somewhere. */
 bool sheen_material_may_be_delta(const SheenScene *scene, uint32_t material);
 
 #endif
