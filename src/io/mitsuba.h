@@ -33,6 +33,7 @@ typedef struct Mitsuba {
     bool with_files;
     MitsubaBitmap *bitmaps;
     uint32_t lamp_material; // of lamps without one, counted from 1; 0 when there is none yet
+    bool has_sky;           // one has been baked into an image
     int material_depth;     // of the materials inside each other that are being read
     SheenStatus status;
 } Mitsuba;

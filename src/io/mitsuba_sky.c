@@ -72,6 +72,11 @@ static bool read_heaven(Mitsuba *m, const SheenXml *e, Heaven *out)
 
 static void add_sky(Mitsuba *m, const SheenXml *e, const Heaven *h, double scale)
 {
+    if (m->has_sky) { // a scene has one environment: a file with a million skies is not to bake them all
+        sheen_xml_warn(m->log, e, "a second sky is left out");
+        return;
+    }
+    m->has_sky = true;
     Rgb *pixels = SHEEN_ARENA_NEW(m->arena, Rgb, (size_t)SKY_WIDTH * SKY_HEIGHT);
     if (!pixels) {
         sheen_mi_fail(m, SHEEN_ERR_NOMEM, e, "out of memory for the sky");

@@ -820,6 +820,9 @@ static void skies_and_suns(void **state)
     assert_float_equal(to_sun.x / to_sun.y, 0.0698f, 0.02f); // it was looked for in steps of two degrees
     kit_scene(k, "<emitter type=\"sky\"><float name=\"turbidity\" value=\"1\"/></emitter>");
     assert_non_null(strstr(k->warnings, "the turbidity 1 is outside [2, 10]"));
+    s = kit_scene(k, "<emitter type=\"sunsky\"/>\n<emitter type=\"sunsky\"/>");
+    assert_int_equal(s->n_lights, 3);
+    assert_non_null(strstr(k->warnings, "scene.xml:3:1: a second sky is left out"));
     s = kit_scene(k, "<emitter type=\"sunsky\"><vector name=\"sun_direction\" z=\"-1\"/></emitter>");
     assert_int_equal(s->n_lights, 0);
     assert_non_null(strstr(k->warnings, "scene.xml:2:1: the sun of 'sunsky' is below the horizon"));
