@@ -41,27 +41,14 @@ typedef struct Clamp {
     bool shrink;    // second pass
 } Clamp;
 
-// Whether the record's own radius is below what the picture resolves.
-static bool is_enlarged(const IrradianceRecord *r)
-{
-    return r->R_sure < r->R_min;
-}
-
-// Whether a record sees the world through a gap far narrower than a pixel: it knows nothing of what is around.
-static bool is_sliver(const IrradianceRecord *r)
-{
-    return r->R_sure <= 0.1f * r->R_min;
-}
-
 static void clamp_record(Clamp *c, uint32_t record)
 {
     IrradianceRecord *r = &c->cache->records[record];
     float d = v3_length(v3_sub(r->p, c->p));
-    if (!c->shrink && is_sliver(r)) return;
     if (c->shrink)
-        r->R = is_enlarged(r) ? r->R : maxf(r->R_min, minf(r->R, c->limit + d));
-    else
-        c->smallest = minf(c->smallest, (is_enlarged(r) ? r->R_min : r->R) + d);
+        r->R = maxf(r->R_min, minf(r->R, c->limit + d));
+    else if (!record_is_sliver(r))
+        c->smallest = minf(c->smallest, r->R + d);
 }
 
 // Visits all entries of the nodes near p. The first pass looks for records nearer than R: others bound nothing. The
@@ -87,12 +74,11 @@ static void clamp_visit(Clamp *c, uint32_t node, Vec3 lo, float side)
 
 static void clamp_neighbors(SheenIrradianceCache *cache, IrradianceRecord *r)
 {
-    float R = is_enlarged(r) ? r->R_min : r->R;
-    Clamp c = {.cache = cache, .p = r->p, .R = R, .smallest = R};
+    if (record_is_sliver(r)) return;
+    Clamp c = {.cache = cache, .p = r->p, .R = r->R, .smallest = r->R};
     clamp_visit(&c, 0, cache->octree->lo, cache->octree->side);
-    c.limit = maxf(r->R_min, c.smallest);
-    if (is_sliver(r)) return;
-    if (!is_enlarged(r)) r->R = c.limit;
+    r->R = maxf(r->R_min, c.smallest);
+    c.limit = r->R;
     c.shrink = true;
     clamp_visit(&c, 0, cache->octree->lo, cache->octree->side);
 }
@@ -117,14 +103,13 @@ SheenStatus sheen_irradiance_cache_insert(SheenIrradianceCache *c, const Irradia
 
 // The weight w - 1/a of a record, continuous where its influence ends. A record whose radius had to be enlarged to what
 // the picture resolves keeps its full weight within its own radius; in the ring beyond it a thousandth: that decides
-// only where no other record reaches. A contact's darkness would otherwise
-// paint discs onto the open floor beside it.
+// only where no other record reaches. A contact's darkness would otherwise paint discs onto the open floor beside it.
 // @param cover  out: 2 for a record that reaches the point by itself, 1 where it was enlarged
 static float influence(const SheenIrradianceCache *c, const IrradianceRecord *r, float d2, float cos_n, unsigned *cover)
 {
     const float ring = 1e-3f;
     float least = 1.0f / c->accuracy, w = record_weight(r->R, d2, cos_n) - least;
-    if (!is_enlarged(r)) {
+    if (!record_is_enlarged(r)) {
         *cover = 2;
         return w;
     }

@@ -25,8 +25,7 @@ void sheen_irradiance_cache_destroy(SheenIrradianceCache **cache);
 
 /**
  * Stores a copy of the record. With neighbor clamping its radius first becomes at most R_j + distance of each record j,
- * and then those records' radii at most R + distance, none below its own R_min. Enlarged records (R_sure < R_min) count
- * with R_min and keep their R; those whose own radius is below a tenth of R_min clamp nobody.
+ * and then those records' radii at most R + distance, none below its own R_min. Slivers clamp nobody.
  * Source: krivanek2006-making-caching-practical sec. 5.2, with radii clamped to their minimum first: a contact's tiny
  * unclamped radius would otherwise push all its neighbors to their minimum too.
  */

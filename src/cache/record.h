@@ -5,17 +5,34 @@
 
 #include "math/vec.h"
 
+#include <stdbool.h>
+
+/** The least R_sure that a record is given, in units of R_min. */
+#define SHEEN_SLIVER 0.1f
+
 typedef struct IrradianceRecord {
     Vec3 p;              // position, world space, metres
     Vec3 n;              // unit normal of the side that is lit
     float R;             // clamped harmonic mean distance, metres: the record reaches a R on a plane
     float R_min;         // the least R that later clamping may set
-    float R_sure;        // its own radius where that is below R_min: farther out it speaks where no other record does
+    float R_sure;        // its own radius. Below R_min, R is R_min: farther out it speaks where no other record does
     float error;         // relative standard error of E
     Rgb E;               // irradiance, W/m^2
     Vec3 translation[3]; // gradient of E for a shift of p, per channel, W/m^3; in the plane of n
     Vec3 rotation[3];    // gradient of E for a rotation n x n', per channel
 } IrradianceRecord;
+
+/** Whether the record's own radius is below what the picture resolves. */
+static inline bool record_is_enlarged(const IrradianceRecord *r)
+{
+    return r->R_sure < r->R_min;
+}
+
+/** Whether it sees the world through a gap far narrower than a pixel: it knows nothing of what is around. */
+static inline bool record_is_sliver(const IrradianceRecord *r)
+{
+    return r->R_sure <= SHEEN_SLIVER * r->R_min;
+}
 
 /**
  * Weight of a record: the inverse of the split-sphere estimate of the interpolation error, without the accuracy a.

@@ -10,8 +10,6 @@
 // The reach a R of a record on a plane, in pixels. Below the least nothing is seen, above the most one record's noise
 // would spread over a wide disc.
 static const float reach_min_px = 4.0f, reach_max_px = 25.0f;
-// The least own radius of a record, in units of its enlarged one.
-static const float sure_min = 0.1f;
 // A gather spends more rays until the standard error of its irradiance is expected to be so small.
 static const float gather_error = 0.03f;
 enum {
@@ -131,7 +129,7 @@ static void set_radius(const SheenOptions *o, const IrradianceEstimate *e, float
         if (g > 0.0f) R = minf(R, rgb_luminance(e->E) / g);
     }
     r->R = clampf(R, r->R_min, R_max);
-    r->R_sure = maxf(R, sure_min * r->R_min);
+    r->R_sure = maxf(R, SHEEN_SLIVER * r->R_min);
     // Where the pixel allows no smaller radius the gradient would overshoot: it is scaled down by as much.
     if (!(R < r->R_min)) return;
     float scale = maxf(R, 0.0f) / r->R_min;
