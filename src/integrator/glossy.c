@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrator/glossy.h"
 
+#include "integrator/mis.h"
+
 void sheen_seen_surface(const SheenWork *work, Vec3 wo, SeenSurface *out)
 {
     out->frame = frame_from_normal(out->s.ns);
@@ -10,33 +12,11 @@ void sheen_seen_surface(const SheenWork *work, Vec3 wo, SeenSurface *out)
     out->both_sides = sheen_bsdf_transmits(&out->bsdf);
 }
 
-// Weight of a sample of density a where another technique would have drawn it with density b. Source: veach1997 ch. 9
-static float power_heuristic(float a, float b)
-{
-    float ratio = b / a;
-    return 1.0f / (1.0f + ratio * ratio);
-}
-
-// Chooses a light; where light from both sides is scattered a coin decides on the side first.
-// @return the probability, of the light by either way
-static float choose_light(const SheenLights *lights, const SeenSurface *v, float u, uint32_t *light)
-{
-    if (!v->both_sides) return sheen_lights_choose(lights, v->s.p, v->side, &u, light);
-    bool other = u >= 0.5f;
-    u = other ? 2.0f * u - 1.0f : 2.0f * u;
-    Vec3 back = v3_neg(v->side);
-    float chosen = sheen_lights_choose(lights, v->s.p, other ? back : v->side, &u, light);
-    if (!(chosen > 0.0f)) return 0.0f;
-    return 0.5f * (chosen + sheen_lights_choose_probability(lights, v->s.p, other ? v->side : back, *light));
-}
-
 // Light samples that go to `light` from a point, in the mean.
 static float samples_expected(const SheenLights *lights, LightPlan plan, const GlossyOrigin *o, uint32_t light)
 {
     if (plan.each > 0) return (float)plan.samples;
-    float p = sheen_lights_choose_probability(lights, o->p, o->side, light);
-    if (o->both_sides) p = 0.5f * (p + sheen_lights_choose_probability(lights, o->p, v3_neg(o->side), light));
-    return (float)plan.samples * p;
+    return (float)plan.samples * choose_light_probability(lights, o->p, o->side, o->both_sides, light);
 }
 
 // One of `samples` light samples.
@@ -46,7 +26,8 @@ static Rgb light_sample(const SheenWork *work, const SeenSurface *v, LightNumber
     uint32_t light = numbers.light;
     float choice = 1.0f;
     LightSample ls;
-    if (light == SHEEN_NONE) choice = choose_light(work->lights, v, numbers.choice, &light);
+    if (light == SHEEN_NONE)
+        choice = choose_light(work->lights, v->s.p, v->side, v->both_sides, numbers.choice, &light);
     if (!(choice > 0.0f) || !sheen_light_sample(work->lights, light, v->s.p, numbers.place, &ls)) return rgb_gray(0.0f);
     Vec3 wi_l = frame_to_local(&v->frame, ls.wi);
     if (!(wi_l.z * v3_dot(ls.wi, v->s.ng) > 0.0f)) return rgb_gray(0.0f);
@@ -63,11 +44,13 @@ static Rgb light_sample(const SheenWork *work, const SeenSurface *v, LightNumber
     return rgb_scale(rgb_mul(f, ls.radiance), 1.0f / (choice * (float)samples));
 }
 
-Rgb sheen_glossy_lit(const SheenWork *work, const SeenSurface *v, uint32_t key, uint32_t index, SheenStats *stats)
+Rgb sheen_glossy_lit(const SheenWork *work, const SeenSurface *v, uint32_t branch, uint32_t pixel, uint32_t sample,
+                     SheenStats *stats)
 {
     Rgb L = rgb_gray(0.0f);
-    LightPlan plan = sheen_light_plan(work);
     if (sheen_lights_count(work->lights) == 0) return L;
+    LightPlan plan = sheen_light_plan(work);
+    uint32_t key = sheen_light_key(work, branch), index = sheen_light_index(work, plan, pixel, sample);
     uint32_t turns = plan.each ? plan.each : 1;
     for (uint32_t turn = 0; turn < turns; ++turn) {
         uint32_t light = plan.each ? turn : SHEEN_NONE;

@@ -29,9 +29,10 @@ typedef struct GlossyOrigin {
 /**
  * Radiance toward the viewer that light samples find: of the diffuse part all, of the glossy part the share that rays
  * along it do not find better.
- * @param key, index  of the random numbers: see sheen_light_sampler
+ * @param branch, pixel, sample  of the way that sees it: they key the random numbers, as those of a ShadingPoint do
  */
-Rgb sheen_glossy_lit(const SheenWork *work, const SeenSurface *v, uint32_t key, uint32_t index, SheenStats *stats);
+Rgb sheen_glossy_lit(const SheenWork *work, const SeenSurface *v, uint32_t branch, uint32_t pixel, uint32_t sample,
+                     SheenStats *stats);
 
 /**
  * Draws the ray along the glossy part. @param roughness  gets that of the lobe drawn

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrator/path.h"
 
+#include "integrator/mis.h"
 #include "material/bsdf.h"
 
 // After so many scatterings, not at delta lobes, a path of small throughput is ended by chance. Earlier ends would cost
@@ -47,14 +48,6 @@ static void draw_from(Path *path, uint32_t dim)
     path->sampler.dim = SHEEN_PATH_FIRST_DIM + path->vertices * DIMS_PER_VERTEX + dim;
 }
 
-// Weight of a sample of density a where another technique would have drawn it with density b: a^2 / (a^2 + b^2), in a
-// form that does not overflow. Source: veach1997 ch. 9.
-static float power_heuristic(float a, float b)
-{
-    float ratio = b / a;
-    return 1.0f / (1.0f + ratio * ratio);
-}
-
 // Books light that took `scatterings` scatterings to arrive.
 static void add_light(Path *path, uint32_t scatterings, Rgb radiance)
 {
@@ -62,30 +55,11 @@ static void add_light(Path *path, uint32_t scatterings, Rgb radiance)
     *sum = rgb_add(*sum, rgb_mul(path->throughput, radiance));
 }
 
-// Chooses a light for a light sample. Where light from both sides is scattered, a coin decides on the side first.
-// @return the probability, of the light by either way
-static float choose_light(const SheenLights *lights, Vec3 p, Vec3 n, bool both_sides, float *u, uint32_t *light)
-{
-    if (!both_sides) return sheen_lights_choose(lights, p, n, u, light);
-    bool other = *u >= 0.5f;
-    *u = other ? 2.0f * *u - 1.0f : 2.0f * *u;
-    float chosen = sheen_lights_choose(lights, p, other ? v3_neg(n) : n, u, light);
-    if (!(chosen > 0.0f)) return 0.0f;
-    return 0.5f * (chosen + sheen_lights_choose_probability(lights, p, other ? n : v3_neg(n), *light));
-}
-
-static float light_probability(const Path *path, uint32_t light)
-{
-    const SheenLights *lights = path->work->lights;
-    float p = sheen_lights_choose_probability(lights, path->p, path->n, light);
-    if (!path->both_sides) return p;
-    return 0.5f * (p + sheen_lights_choose_probability(lights, path->p, v3_neg(path->n), light));
-}
-
 // Weight of light that the path's ray found: `light` its index, pdf_light the density of light samples there.
 static float weight_of_found(const Path *path, uint32_t light, float pdf_light)
 {
-    return power_heuristic(path->pdf, (float)path->light_samples * light_probability(path, light) * pdf_light);
+    float choice = choose_light_probability(path->work->lights, path->p, path->n, path->both_sides, light);
+    return power_heuristic(path->pdf, (float)path->light_samples * choice * pdf_light);
 }
 
 static void add_environment(Path *path)
@@ -130,7 +104,7 @@ static Rgb light_sample(const Path *path, const Vertex *v, uint32_t n_samples, f
 {
     const SheenWork *work = path->work;
     uint32_t light;
-    float choice = choose_light(work->lights, v->s.p, v->side, v->both_sides, &u_choice, &light);
+    float choice = choose_light(work->lights, v->s.p, v->side, v->both_sides, u_choice, &light);
     LightSample ls;
     if (!(choice > 0.0f) || !sheen_light_sample(work->lights, light, v->s.p, u, &ls)) return rgb_gray(0.0f);
     Vec3 wi_l = frame_to_local(&v->frame, ls.wi);

@@ -180,8 +180,7 @@ static bool see(const SheenWork *work, const EyeRay *r, const SeenSurface *s, in
     if ((classes & SHEEN_BSDF_DELTA) && !split(r, s, list, v)) return false;
     if ((classes & SHEEN_BSDF_GLOSSY) && !send_glossy(work, r, s, list, v)) return false;
     if ((classes & SHEEN_BSDF_SMOOTH) && film) {
-        uint32_t index = sheen_light_index(work, sheen_light_plan(work), r->pixel, r->sample);
-        Rgb L = sheen_glossy_lit(work, s, sheen_light_key(work, r->branch), index, stats);
+        Rgb L = sheen_glossy_lit(work, s, r->branch, r->pixel, r->sample, stats);
         add_light(work, r, L, weight, film, stats);
     }
     DiffusePoint point;
