@@ -196,8 +196,7 @@ static uint32_t key_of(size_t point)
 
 static void trace(Bench *b, size_t i)
 {
-    static const HotSpots none = {0};
-    sheen_hemisphere_begin(&b->points[i].point, key_of(i), &none, 0.0f, 0.0f, &b->h);
+    sheen_hemisphere_begin(&b->points[i].point, key_of(i), &b->h);
     sheen_hemisphere_trace(&b->work, &b->points[i].point, b->work.options.bounces, &b->h, &b->stats);
 }
 

@@ -5,24 +5,18 @@
 
 #include <stddef.h>
 
-// The standard deviation over the up to 8 neighbors of ring j, sector k: what lies beside a cell tells what may be in
-// it.
+// The standard deviation over the neighbors of ring j, sector k: what lies beside a cell tells what may be in it.
 static float deviation_of(SheenStrata s, const float value[], unsigned j, unsigned k)
 {
-    unsigned before = k ? k - 1 : s.sectors - 1, after = k + 1 < s.sectors ? k + 1 : 0;
-    const float *side[3] = {value + (size_t)before * s.rings, value + (size_t)k * s.rings,
-                            value + (size_t)after * s.rings};
-    unsigned lo = j ? j - 1 : 0, hi = j + 1 < s.rings ? j + 1 : j;
-    float sum = 0.0f, squares = 0.0f, n = 0.0f;
-    for (unsigned c = 0; c < 3; ++c)
-        for (unsigned i = lo; i <= hi; ++i) {
-            if (c == 1 && i == j) continue;
-            sum += side[c][i];
-            squares += side[c][i] * side[c][i];
-            n += 1.0f;
-        }
-    float mean = sum / n;
-    return safe_sqrtf(squares / n - mean * mean);
+    uint32_t beside[8];
+    unsigned n = strata_neighbors(s, j, k, beside);
+    float sum = 0.0f, squares = 0.0f;
+    for (unsigned i = 0; i < n; ++i) {
+        sum += value[beside[i]];
+        squares += value[beside[i]] * value[beside[i]];
+    }
+    float mean = sum / (float)n;
+    return safe_sqrtf(squares / (float)n - mean * mean);
 }
 
 // Cells get density times their deviation rays in all, the first included.

@@ -31,6 +31,20 @@ static inline unsigned strata_count(SheenStrata s)
 Vec3 sheen_strata_direction(SheenStrata s, unsigned j, unsigned k, Vec2 u);
 
 /**
+ * The cells beside cell (j, k), across edges and corners: 8, fewer at the pole and at the horizon.
+ * @return their number
+ */
+static inline unsigned strata_neighbors(SheenStrata s, unsigned j, unsigned k, uint32_t out[8])
+{
+    unsigned sectors[3] = {k ? k - 1 : s.sectors - 1, k, k + 1 < s.sectors ? k + 1 : 0};
+    unsigned lo = j ? j - 1 : 0, hi = j + 1 < s.rings ? j + 1 : j, n = 0;
+    for (unsigned c = 0; c < 3; ++c)
+        for (unsigned i = lo; i <= hi; ++i)
+            if (c != 1 || i != j) out[n++] = sectors[c] * s.rings + i;
+    return n;
+}
+
+/**
  * A jittered direction in each cell: those of sheen_strata_direction, to a few units in the last place, for random
  * numbers that are hashes of the key and the cell.
  * @param out  [cells]

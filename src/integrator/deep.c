@@ -83,13 +83,6 @@ static uint32_t point_key(const SheenDeep *d, uint32_t index, uint32_t use)
     return hash_combine(hash_combine(d->work->options.seed ^ 0xdee9u, index), use);
 }
 
-// Nothing is known yet of hot spots.
-static void begin_gather(const DiffusePoint *p, uint32_t key, Hemisphere *h)
-{
-    static const HotSpots none = {0};
-    sheen_hemisphere_begin(p, key, &none, 0.0f, 0.0f, h);
-}
-
 static float reach_of(const SheenDeep *d, float R)
 {
     return clampf(deep_accuracy * R, d->reach_min, maxf(reach_max * d->scale, d->reach_min));
@@ -130,7 +123,7 @@ static SheenStatus place(SheenDeep *d, Queue *q, uint32_t most, Hemisphere *prob
     while (q->head < q->tail && d->cache->n_records < most) {
         DiffusePoint p = q->items[q->head++];
         if (covered(d, p.p, p.n)) continue;
-        begin_gather(&p, point_key(d, d->cache->n_records, 0), probe);
+        sheen_hemisphere_begin(&p, point_key(d, d->cache->n_records, 0), probe);
         sheen_hemisphere_trace(d->work, &p, 1, probe, stats);
         if (!store_point(d, &p, sheen_harmonic_mean((unsigned)probe->cells, probe->distance))) return SHEEN_ERR_NOMEM;
         size_t step = probe->n_vertices / FOLLOWED + 1;
@@ -164,7 +157,7 @@ static void gather_task(void *user, size_t item, unsigned worker)
     SheenDeep *d = t->deep;
     uint32_t record = t->first + (uint32_t)item;
     Hemisphere *h = &t->scratch[worker];
-    begin_gather(&d->points[record], point_key(d, record, 1), h);
+    sheen_hemisphere_begin(&d->points[record], point_key(d, record, 1), h);
     sheen_hemisphere_trace(d->work, &d->points[record], 1, h, &t->stats[worker]);
     sheen_hemisphere_add_caustics(d->work, &d->points[record], h, &t->stats[worker]);
     DeepCell *cells = cells_of(d, record);
@@ -310,16 +303,13 @@ static void sweep_task(void *user, size_t item, unsigned worker)
     estimate_world_gradient(&frame, e.rotation, light->rotation);
 }
 
-static float neighbors_mean(const float L[], unsigned j, unsigned k)
+static float neighbors_mean(const float L[], unsigned cell)
 {
-    float sum = 0.0f, n = 0.0f;
-    for (unsigned turn = deep_strata.sectors - 1; turn <= deep_strata.sectors + 1; ++turn)
-        for (unsigned i = j ? j - 1 : 0; i <= j + 1 && i < deep_strata.rings; ++i) {
-            if (i == j && turn == deep_strata.sectors) continue;
-            sum += L[(k + turn) % deep_strata.sectors * deep_strata.rings + i];
-            n += 1.0f;
-        }
-    return sum / n;
+    uint32_t beside[8];
+    unsigned n = strata_neighbors(deep_strata, cell % DEEP_RINGS, cell / DEEP_RINGS, beside);
+    float sum = 0.0f;
+    for (unsigned i = 0; i < n; ++i) sum += L[beside[i]];
+    return sum / (float)n;
 }
 
 // Remembers the small bright places that the gathers found: a stratum that sends many times the mean, and more than
@@ -335,7 +325,7 @@ static void find_hot_spots(SheenDeep *d, const Rgb E[])
         for (unsigned i = 0; i < DEEP_CELLS; ++i) {
             const DeepCell *c = &cells[i];
             if (!(DEEP_CELLS * L[i] > times_mean * sum) || rgb_is_black(c->weight)) continue;
-            if (L[i] < times_neighbors * neighbors_mean(L, i % deep_strata.rings, i / deep_strata.rings)) continue;
+            if (L[i] < times_neighbors * neighbors_mean(L, i)) continue;
             float distance = v3_length(v3_sub(c->p, d->points[r].p));
             if (fabsf(distance - c->distance) < 0.01f * distance) sheen_hot_spots_add(&d->hot, c->p, distance, L[i]);
         }

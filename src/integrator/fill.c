@@ -98,19 +98,19 @@ static void light_vertices(const SheenFill *f, Hemisphere *h, SheenStats *stats)
     add_deep_light(f, h);
 }
 
-// Mean radiance about a point as the deep records know it, in luminance.
-static float expected_mean(const SheenDeep *deep, const DiffusePoint *p, unsigned bounces)
+// The hot spots that matter at a point, by the mean radiance about it as the deep records know it.
+static void choose_guide(const SheenFill *f, const DiffusePoint *p, Hemisphere *h)
 {
-    DeepQuery query = sheen_deep_ask(deep, p->p, p->n, 0.0f, (int)bounces - 1, 0);
-    return SHEEN_INV_PI * rgb_luminance(sheen_deep_answer(deep, &query));
+    DeepQuery query = sheen_deep_ask(f->deep, p->p, p->n, 0.0f, (int)f->work->options.bounces - 1, 0);
+    float mean = SHEEN_INV_PI * rgb_luminance(sheen_deep_answer(f->deep, &query));
+    sheen_guide_choose(sheen_deep_hot_spots(f->deep), p->p, &h->frame, h->strata, mean, gather_error, &h->guide);
 }
 
 static void gather_light(const SheenFill *f, const DiffusePoint *p, uint32_t key, Hemisphere *h, SheenStats *stats)
 {
-    static const HotSpots none = {0};
     unsigned bounces = f->work->options.bounces;
-    float mean = f->deep ? expected_mean(f->deep, p, bounces) : 0.0f;
-    sheen_hemisphere_begin(p, key, f->deep ? sheen_deep_hot_spots(f->deep) : &none, mean, gather_error, h);
+    sheen_hemisphere_begin(p, key, h);
+    if (f->deep) choose_guide(f, p, h);
     sheen_hemisphere_trace(f->work, p, bounces, h, stats);
     light_vertices(f, h, stats);
     if (sheen_hemisphere_refine(f->work, p, bounces, gather_error, h, stats)) light_vertices(f, h, stats);

@@ -112,6 +112,19 @@ void sheen_hemisphere_directions(uint32_t key, Hemisphere *h)
     sheen_strata_directions(h->strata, hash_combine(key, KEY_STRATA), h->directions);
 }
 
+// Point e of a Kronecker sequence of its own for each key. Source: roberts2018-quasirandom.
+static Vec2 kronecker(uint32_t key, uint32_t e)
+{
+    return v2(hash_to_unit(key + e * 0xc13fa9a9u), hash_to_unit(hash_u32(key) + e * 0x91e10da6u));
+}
+
+// Direction e of a cell beside its first.
+static Vec3 further_direction(const Hemisphere *h, uint32_t use, uint32_t cell, uint32_t e)
+{
+    Vec2 u = kronecker(hash_combine(hash_combine(h->key, use), cell), e);
+    return sheen_strata_direction(h->strata, cell % h->strata.rings, cell / h->strata.rings, u);
+}
+
 // Asks the strata whose ray came to a mirror or a pane for lamps again, several times: a lamp seen there is small and
 // bright, and one ray in a stratum finds it seldom. A stratum's caustic becomes the mean over those of its rays that
 // came to one. Given that the first did, this has the expectation of the first alone, whatever share of the stratum the
@@ -122,9 +135,7 @@ static void resample_caustics(const SheenWork *work, const DiffusePoint *point, 
     h->caustic_rays = n == 0 ? 1 : (uint32_t)(h->cells / n < CAUSTIC_RAYS ? h->cells / n : CAUSTIC_RAYS);
     uint32_t more = h->caustic_rays - 1, key = hash_combine(h->key, KEY_CAUSTIC);
     for (size_t i = 0; i < n * more; ++i) {
-        uint32_t cell = cells[i / more], shift = hash_combine(key, cell), k = (uint32_t)(i % more);
-        Vec2 u = v2(hash_to_unit(shift + k * 0xc13fa9a9u), hash_to_unit(hash_u32(shift) + k * 0x91e10da6u));
-        Vec3 d = sheen_strata_direction(h->strata, cell % h->strata.rings, cell / h->strata.rings, u);
+        Vec3 d = further_direction(h, KEY_CAUSTIC, cells[i / more], (uint32_t)(i % more));
         h->rays[i] = leave(point, frame_to_world(&h->frame, d));
     }
     sheen_accel_intersect_many(work->accel, SHEEN_COHERENT, n * more, h->rays, h->hits);
@@ -143,13 +154,12 @@ static void resample_caustics(const SheenWork *work, const DiffusePoint *point, 
     }
 }
 
-void sheen_hemisphere_begin(const DiffusePoint *point, uint32_t key, const HotSpots *spots, float mean, float error,
-                            Hemisphere *h)
+void sheen_hemisphere_begin(const DiffusePoint *point, uint32_t key, Hemisphere *h)
 {
     h->key = key;
     h->frame = frame_from_normal(point->n);
     h->error = 0.0f;
-    sheen_guide_choose(spots, point->p, &h->frame, h->strata, mean, error, &h->guide);
+    h->guide.n = 0;
 }
 
 void sheen_hemisphere_trace(const SheenWork *work, const DiffusePoint *point, unsigned bounces, Hemisphere *h,
@@ -194,19 +204,13 @@ static uint32_t cell_along(SheenStrata s, Vec3 d)
     return (k < s.sectors ? k : s.sectors - 1) * s.rings + (j < s.rings ? j : s.rings - 1);
 }
 
-// Point e of a Kronecker sequence. Source: roberts2018-quasirandom.
-static Vec2 further_number(const Hemisphere *h, uint32_t use, uint32_t e)
-{
-    uint32_t r = hash_combine(hash_combine(h->key, KEY_FURTHER), use);
-    return v2(hash_to_unit(r + e * 0xc13fa9a9u), hash_to_unit(hash_u32(r) + e * 0x91e10da6u));
-}
-
 static size_t add_cones(Hemisphere *h)
 {
     size_t n = 0;
+    uint32_t key = hash_combine(h->key, KEY_FURTHER);
     for (uint32_t c = 0; c < h->guide.n; ++c)
         for (uint32_t e = 0; e < h->guide.cones[c].rays && n < SHEEN_FURTHER_MAX * h->cells; ++e) {
-            Vec3 d = sheen_cone_direction(&h->guide.cones[c], further_number(h, (uint32_t)h->cells + c, e));
+            Vec3 d = sheen_cone_direction(&h->guide.cones[c], kronecker(hash_combine(key, (uint32_t)h->cells + c), e));
             if (d.z > 1e-4f) h->further[n++] = (GatherRay){.d = d, .cell = cell_along(h->strata, d)};
         }
     return n;
@@ -226,11 +230,8 @@ static size_t plan(float error, Hemisphere *h)
         float weight = ray_weight(h, h->directions[i], 1 + h->extra[i]);
         h->L[i] = rgb_scale(h->L[i], weight);
         h->caustic[i] = rgb_scale(h->caustic[i], weight);
-        for (uint32_t e = 0; e < h->extra[i]; ++e) {
-            Vec2 u = further_number(h, i, e);
-            Vec3 d = sheen_strata_direction(h->strata, i % h->strata.rings, i / h->strata.rings, u);
-            h->further[n++] = (GatherRay){.d = d, .cell = i};
-        }
+        for (uint32_t e = 0; e < h->extra[i]; ++e)
+            h->further[n++] = (GatherRay){.d = further_direction(h, KEY_FURTHER, i, e), .cell = i};
     }
     for (size_t i = 0; i < n; ++i)
         h->further[i].weight = ray_weight(h, h->further[i].d, 1 + h->extra[h->further[i].cell]);

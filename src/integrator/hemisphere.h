@@ -66,9 +66,8 @@ void sheen_hemisphere_free(Hemisphere *h);
 /** Fills h->directions: the jittered strata of a gather, a function of its key alone. */
 void sheen_hemisphere_directions(uint32_t key, Hemisphere *h);
 
-/** Begins a gather at a point: its frame, its key, and the hot spots that matter there. */
-void sheen_hemisphere_begin(const DiffusePoint *point, uint32_t key, const HotSpots *spots, float mean, float error,
-                            Hemisphere *h);
+/** Begins a gather at a point: its frame and its key. It has no hot spots until sheen_guide_choose gives it some. */
+void sheen_hemisphere_begin(const DiffusePoint *point, uint32_t key, Hemisphere *h);
 
 /**
  * Traces the fan over a point, in sector order, and fills everything but the light at the vertices.

@@ -24,6 +24,12 @@ void sheen_hot_spots_add(HotSpots *s, Vec3 p, float distance, float radiance)
     if (s->n < SHEEN_HOT_SPOTS_MAX) s->spots[s->n++] = (HotSpot){p, maxf(least, 0.3f * near), radiance, 1};
 }
 
+// Of a cone, sr.
+static float solid_angle(float sin2_max)
+{
+    return 2.0f * SHEEN_PI * sin2_max / (1.0f + safe_sqrtf(1.0f - sin2_max));
+}
+
 // The cone about one spot as seen from p. @return its solid angle, sr; 0 when p is too near, or below the horizon.
 static float make_cone(const HotSpot *spot, Vec3 p, const Frame *frame, Cone *cone)
 {
@@ -32,7 +38,7 @@ static float make_cone(const HotSpot *spot, Vec3 p, const Frame *frame, Cone *co
     if (!(r > 2.0f * spot->radius) || !(v3_dot(to, frame->n) > 0.0f)) return 0.0f;
     cone->axis = frame_to_local(frame, v3_scale(to, 1.0f / r));
     cone->sin2_max = maxf(sqrf(spot->radius) / r2, sqrf(least_angle));
-    return 2.0f * SHEEN_PI * cone->sin2_max / (1.0f + safe_sqrtf(1.0f - cone->sin2_max));
+    return solid_angle(cone->sin2_max);
 }
 
 // Gives a cone its rays. @return false when the spot is not worth one.
@@ -113,13 +119,12 @@ float sheen_guide_direction(const Guide *g, Vec3 p, const Frame *frame, float ch
     }
     float share = minf(hot / (hot + SHEEN_PI * g->mean), share_max);
     if (choice < share) {
-        // density omega is the probability of each.
         float left = choice / share;
         uint32_t k = 0;
         for (; k + 1 < local.n; ++k) {
-            float sin2 = local.cones[k].sin2_max, omega = 2.0f * SHEEN_PI * sin2 / (1.0f + safe_sqrtf(1.0f - sin2));
-            if (left < local.cones[k].density * omega) break;
-            left -= local.cones[k].density * omega;
+            float probability = local.cones[k].density * solid_angle(local.cones[k].sin2_max);
+            if (left < probability) break;
+            left -= probability;
         }
         *d = sheen_cone_direction(&local.cones[k], u);
     } else {
