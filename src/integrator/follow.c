@@ -8,18 +8,13 @@ bool sheen_set_point(const SurfacePoint *s, bool front, Rgb reflectance, Diffuse
     return !rgb_is_black(reflectance);
 }
 
-static float unit_or_zero(float x) // a NaN becomes 0
-{
-    return x > 0.0f ? minf(x, 1.0f) : 0.0f;
-}
-
 bool sheen_lambertian_point(const SheenMaterial *material, const SurfacePoint *s, Vec3 wo, DiffusePoint *out)
 {
     bool front = v3_dot(wo, s->ng) >= 0.0f;
     if (!front && !material->two_sided) return false;
     const SheenTexture *t = &material->reflectance;
     Rgb c = t->kind == SHEEN_TEXTURE_CONSTANT ? t->value : sheen_texture_eval(t, s->uv);
-    return sheen_set_point(s, front, rgb(unit_or_zero(c.r), unit_or_zero(c.g), unit_or_zero(c.b)), out);
+    return sheen_set_point(s, front, rgb_unit(c), out);
 }
 
 // A rough reflection at least so wide is nearly the same from everywhere, next to all else that a gather blurs.

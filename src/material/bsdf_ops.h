@@ -46,6 +46,28 @@ static inline Vec3 bsdf_mirror(Vec3 wo_l)
     return v3(-wo_l.x, -wo_l.y, wo_l.z);
 }
 
+/** The lobe of a mirror that reflects the lobe's albedo. @return their number, 0 when it is black */
+static inline int bsdf_mirror_lobe(const BsdfLobe *b, Vec3 wo, BsdfSample out[2])
+{
+    Rgb factor = b->ops->albedo(b, wo);
+    if (rgb_is_black(factor)) return 0;
+    out[0] = bsdf_delta(bsdf_mirror(wo), factor, 1.0f, false);
+    return 1;
+}
+
+/** The importance of lobes whose albedo is quickly told. */
+static inline float bsdf_albedo_importance(const BsdfLobe *b, Vec3 wo)
+{
+    return rgb_max(b->ops->albedo(b, wo));
+}
+
+/** Puts a rough kind in a smooth one's place. */
+static inline void bsdf_become_rough(BsdfLobe *b, const BsdfOps *rough, float alpha)
+{
+    b->ops = rough;
+    b->microfacet = (Microfacet){SHEEN_DISTRIBUTION_GGX, alpha, alpha};
+}
+
 /**
  * The two lobes of an interface without its own absorption, those that are black left out.
  * @param reflected, transmitted  share of the energy, tints included

@@ -20,20 +20,14 @@ static Rgb dielectric_albedo(const BsdfLobe *b, Vec3 wo)
     return rgb_mad(rgb_scale(b->reflectance, f), 1.0f - f, b->transmittance);
 }
 
-static float dielectric_importance(const BsdfLobe *b, Vec3 wo)
-{
-    return rgb_max(dielectric_albedo(b, wo));
-}
-
 static void dielectric_roughen(BsdfLobe *b, float least_alpha)
 {
     if (fabsf(b->material->ior - 1.0f) < 1e-3f) return; // nothing to be rough
-    b->ops = &sheen_lobe_rough_dielectric;
-    b->microfacet = (Microfacet){SHEEN_DISTRIBUTION_GGX, least_alpha, least_alpha};
+    bsdf_become_rough(b, &sheen_lobe_rough_dielectric, least_alpha);
 }
 
 const BsdfOps sheen_lobe_dielectric = {.class = SHEEN_BSDF_DELTA,
                                        .lobes = dielectric_lobes,
                                        .albedo = dielectric_albedo,
-                                       .importance = dielectric_importance,
+                                       .importance = bsdf_albedo_importance,
                                        .roughen = dielectric_roughen};

@@ -17,16 +17,9 @@ typedef struct Inside {
     Frame frame; // of the innermost wrapper, world space
 } Inside;
 
-// Reflectances outside [0, 1] would make energy out of nothing; the comparisons send NaN to 0.
-static float unit_or_zero(float x)
-{
-    return x > 0.0f ? minf(x, 1.0f) : 0.0f;
-}
-
 static Rgb color_at(const Place *p, const SheenTexture *t)
 {
-    Rgb c = sheen_texture_eval(t, p->s->uv);
-    return rgb(unit_or_zero(c.r), unit_or_zero(c.g), unit_or_zero(c.b));
+    return rgb_unit(sheen_texture_eval(t, p->s->uv));
 }
 
 static float number_at(const Place *p, const SheenTexture *t)

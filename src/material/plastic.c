@@ -19,30 +19,16 @@ static Rgb coat_albedo(const BsdfLobe *b, Vec3 wo)
     return wo.z > 0.0f ? rgb_scale(b->reflectance, interface_reflectance(b, wo.z)) : rgb_gray(0.0f);
 }
 
-static int coat_lobes(const BsdfLobe *b, Vec3 wo, BsdfSample out[2])
-{
-    Rgb factor = coat_albedo(b, wo);
-    if (rgb_is_black(factor)) return 0;
-    out[0] = bsdf_delta(bsdf_mirror(wo), factor, 1.0f, false);
-    return 1;
-}
-
-static float coat_importance(const BsdfLobe *b, Vec3 wo)
-{
-    return rgb_max(coat_albedo(b, wo));
-}
-
 static void coat_roughen(BsdfLobe *b, float least_alpha)
 {
-    b->ops = &sheen_lobe_rough_coat;
-    b->microfacet = (Microfacet){SHEEN_DISTRIBUTION_GGX, least_alpha, least_alpha};
+    bsdf_become_rough(b, &sheen_lobe_rough_coat, least_alpha);
 }
 
 const BsdfOps sheen_lobe_coat = {.class = SHEEN_BSDF_DELTA,
                                  .layer = true,
-                                 .lobes = coat_lobes,
+                                 .lobes = bsdf_mirror_lobe,
                                  .albedo = coat_albedo,
-                                 .importance = coat_importance,
+                                 .importance = bsdf_albedo_importance,
                                  .roughen = coat_roughen};
 
 // ---- the rough interface ----------------------------------------------------------------------------------------
@@ -121,14 +107,9 @@ static Rgb base_albedo(const BsdfLobe *b, Vec3 wo)
     return rgb_scale(rgb_mul(b->reflectance, b->transmittance), through(b, wo.z) * mean);
 }
 
-static float base_importance(const BsdfLobe *b, Vec3 wo)
-{
-    return rgb_max(base_albedo(b, wo));
-}
-
 const BsdfOps sheen_lobe_coated_lambert = {.class = SHEEN_BSDF_DIFFUSE,
                                            .eval = base_eval,
                                            .pdf = base_pdf,
                                            .sample = base_sample,
                                            .albedo = base_albedo,
-                                           .importance = base_importance};
+                                           .importance = bsdf_albedo_importance};

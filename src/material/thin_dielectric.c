@@ -24,10 +24,5 @@ static Rgb thin_albedo(const BsdfLobe *b, Vec3 wo)
     return rgb_mad(rgb_scale(b->reflectance, r), 1.0f - r, b->transmittance);
 }
 
-static float thin_importance(const BsdfLobe *b, Vec3 wo)
-{
-    return rgb_max(thin_albedo(b, wo));
-}
-
 const BsdfOps sheen_lobe_thin_dielectric = {
-    .class = SHEEN_BSDF_DELTA, .lobes = thin_lobes, .albedo = thin_albedo, .importance = thin_importance};
+    .class = SHEEN_BSDF_DELTA, .lobes = thin_lobes, .albedo = thin_albedo, .importance = bsdf_albedo_importance};

@@ -38,6 +38,11 @@ static inline float clampf(float x, float lo, float hi)
 {
     return x < lo ? lo : x > hi ? hi : x;
 }
+/** x in [0, 1]; a NaN becomes 0. */
+static inline float unit_or_zero(float x)
+{
+    return x > 0.0f ? minf(x, 1.0f) : 0.0f;
+}
 static inline float sqrf(float x)
 {
     return x * x;
@@ -154,6 +159,11 @@ static inline Rgb rgb_mad(Rgb a, float s, Rgb b)
 static inline float rgb_max(Rgb a)
 {
     return maxf(a.r, maxf(a.g, a.b));
+}
+/** Each channel in [0, 1]; a NaN becomes 0. Reflectances beyond would make energy out of nothing. */
+static inline Rgb rgb_unit(Rgb a)
+{
+    return rgb(unit_or_zero(a.r), unit_or_zero(a.g), unit_or_zero(a.b));
 }
 static inline bool rgb_is_black(Rgb a)
 {
