@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The reader of Mitsuba scenes on any bytes, without other files: no crash, and either a scene or an error.
+#include "errors.h"
 #include "io/mitsuba.h"
 
 #include <stdlib.h>
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static void count_errors(void *user, SheenLogLevel level, const char *text)
-{
-    (void)text;
-    *(int *)user += level == SHEEN_LOG_ERROR;
-}
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

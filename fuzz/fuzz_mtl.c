@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The reader of material libraries, and the OBJ reader with its parts, on any bytes: no crash, one line for a failure.
+#include "errors.h"
 #include "io/mtl.h"
 #include "io/obj.h"
 
 #include <stdlib.h>
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static void count_errors(void *user, SheenLogLevel level, const char *text)
-{
-    (void)text;
-    *(int *)user += level == SHEEN_LOG_ERROR;
-}
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

@@ -186,19 +186,25 @@ static SheenStatus read_map(Reader *r, MtlMap *out)
 
 // ---- statements -------------------------------------------------------------------------------------------------
 
+MtlMaterial sheen_mtl_default(const char *name)
+{
+    return (MtlMaterial){.name = name,
+                         .library = "",
+                         .diffuse = rgb_gray(0.5f),
+                         .filter = rgb_gray(1.0f),
+                         .ior = 1.0f,
+                         .opacity = 1.0f,
+                         .roughness = -1.0f,
+                         .metallic = -1.0f,
+                         .illum = 2};
+}
+
 static SheenStatus begin_material(Reader *r)
 {
-    MtlMaterial m = {.name = read_rest(r),
-                     .library = r->name,
-                     .line = r->line,
-                     .diffuse = rgb_gray(0.5f),
-                     .filter = rgb_gray(1.0f),
-                     .ior = 1.0f,
-                     .opacity = 1.0f,
-                     .roughness = -1.0f,
-                     .metallic = -1.0f,
-                     .illum = 2,
-                     .of_blender = r->of_blender};
+    MtlMaterial m = sheen_mtl_default(read_rest(r));
+    m.library = r->name;
+    m.line = r->line;
+    m.of_blender = r->of_blender;
     if (!m.name || !sheen_reserve((void **)&r->materials, &r->capacity, (uint64_t)r->n + 1, sizeof m))
         return no_memory(r);
     r->materials[r->n++] = m;

@@ -45,6 +45,9 @@ typedef struct MtlLibrary {
     uint32_t n;
 } MtlLibrary;
 
+/** A material of which nothing but the name is said, or that is defined nowhere: diffuse 0.5. `name` is borrowed. */
+MtlMaterial sheen_mtl_default(const char *name);
+
 /**
  * Reads a library. What it holds beyond the fields above is skipped, with a warning for what a picture would show.
  * @param name  stands for the file in messages

@@ -13,19 +13,6 @@ static SheenStatus no_memory(const MtlReader *r)
     return sheen_fail(r->log, SHEEN_ERR_NOMEM, "%s: out of memory", r->scene);
 }
 
-MtlMaterial sheen_mtl_default(const char *name)
-{
-    return (MtlMaterial){.name = name,
-                         .library = "",
-                         .diffuse = rgb_gray(0.5f),
-                         .filter = rgb_gray(1.0f),
-                         .ior = 1.0f,
-                         .opacity = 1.0f,
-                         .roughness = -1.0f,
-                         .metallic = -1.0f,
-                         .illum = 2};
-}
-
 // ---- pictures ---------------------------------------------------------------------------------------------------
 
 /** Beside the library, then beside the scene, as named and by the base name. @return NULL when it is nowhere. */

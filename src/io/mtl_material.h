@@ -24,9 +24,6 @@ typedef struct MtlReader {
     MtlPicture *pictures;
 } MtlReader;
 
-/** What stands in for a material that is defined nowhere: diffuse 0.5. `name` is borrowed. */
-MtlMaterial sheen_mtl_default(const char *name);
-
 /**
  * Adds what a library's material means (docs/obj-scenes.md) to the builder.
  * @param index  of the scene's material

@@ -24,20 +24,27 @@ static SheenMaterial material(SheenMaterialKind kind)
 }
 
 // A ball on which nothing is lost shows its surroundings' radiance. Direct light alone does it: the ball is convex.
+// Renders direct light alone and asserts its mean: see kit_assert_mean. Takes the builder.
+static void assert_direct_light(SheenBuilder *b, uint32_t spp, double expected, double slack, double sharp,
+                                const char *what)
+{
+    Kit kit;
+    kit_end(b, 2, &kit);
+    kit.work.options.bounces = 0;
+    kit.work.options.spp = spp;
+    SheenFilm *film = kit_render(&kit, 0, NULL);
+    kit_assert_mean(film, expected, slack, sharp, what);
+    sheen_film_destroy(&film);
+    kit_free(&kit);
+}
+
 static void ball_in_furnace(const SheenMaterial *m, double slack, const char *what)
 {
     SheenBuilder *b = kit_begin();
     kit_constant_environment(b, rgb_gray(1.0f));
     kit_sphere(b, v3(0, 0, 4), 1.0f, false, sheen_builder_add_material(b, m));
     kit_camera(b, v3(0, 0, 0), v3(0, 0, 4), v3(0, 1, 0), 0.3f);
-    Kit kit;
-    kit_end(b, 2, &kit);
-    kit.work.options.bounces = 0;
-    kit.work.options.spp = 64;
-    SheenFilm *film = kit_render(&kit, 0, NULL);
-    kit_assert_mean(film, 1.0, slack, 3e-3, what);
-    sheen_film_destroy(&film);
-    kit_free(&kit);
+    assert_direct_light(b, 64, 1.0, slack, 3e-3, what);
 }
 
 static void test_white_plastic(void **state)
@@ -68,15 +75,8 @@ static void test_white_mixture(void **state)
     mask.nested[0] = sheen_builder_add_material(b, &blend);
     kit_quad(b, v3(-2, -2, 3), v3(4, 0, 1), v3(0, 4, 0), sheen_builder_add_material(b, &mask));
     kit_camera(b, v3(0, 0, 0), v3(0, 0, 4), v3(0, 1, 0), 0.3f);
-    Kit kit;
-    kit_end(b, 2, &kit);
     // The mirror has one side and is black from behind; the camera is behind the quad.
-    kit.work.options.bounces = 0;
-    kit.work.options.spp = 256;
-    SheenFilm *film = kit_render(&kit, 0, NULL);
-    kit_assert_mean(film, 1.0 - 0.4 * 0.4, 1e-4, 3e-3, "mask of a blend");
-    sheen_film_destroy(&film);
-    kit_free(&kit);
+    assert_direct_light(b, 256, 1.0 - 0.4 * 0.4, 1e-4, 3e-3, "mask of a blend");
 }
 
 // A sheet that lets 0.5 of the light through, diffusely, between two lamps: only the one behind it is seen through it.
@@ -95,15 +95,8 @@ static void test_lamp_behind_a_sheet(void **state)
             sheen_builder_add_light(b, &light);
         }
         kit_camera(b, v3(0, 0, 0), v3(0, 0, 2), v3(0, 1, 0), 0.002f);
-        Kit kit;
-        kit_end(b, 1, &kit);
-        kit.work.options.bounces = 0;
-        kit.work.options.spp = 256;
-        SheenFilm *film = kit_render(&kit, 0, NULL);
         // I cos / d^2 = 8 (4 / 5) / 25
-        kit_assert_mean(film, 0.5 / (double)SHEEN_PI * 0.256, 1e-3, 5e-3, "sheet");
-        sheen_film_destroy(&film);
-        kit_free(&kit);
+        assert_direct_light(b, 256, 0.5 / (double)SHEEN_PI * 0.256, 1e-3, 5e-3, "sheet");
     }
 }
 
@@ -117,16 +110,9 @@ static void test_rough_glass_under_an_even_sky(void **state)
     kit_constant_environment(b, rgb_gray(1.0f));
     kit_quad(b, v3(-1, -1, 2), v3(0, 2, 0), v3(2, 0, 0), sheen_builder_add_material(b, &m));
     kit_camera(b, v3(0, 0, 0), v3(0, 0, 2), v3(0, 1, 0), 0.002f);
-    Kit kit;
-    kit_end(b, 2, &kit);
-    kit.work.options.bounces = 0;
-    kit.work.options.spp = 64;
-    SheenFilm *film = kit_render(&kit, 0, NULL);
     // The mean over normals in double precision, seen perpendicularly: 0.03560 reflected and 0.95279 let through, which
     // spreads over 1.5^2.
-    kit_assert_mean(film, 0.03560 + 0.95279 / 2.25, 2e-4, 2e-3, "rough glass");
-    sheen_film_destroy(&film);
-    kit_free(&kit);
+    assert_direct_light(b, 64, 0.03560 + 0.95279 / 2.25, 2e-4, 2e-3, "rough glass");
 }
 
 int main(void)
