@@ -3,6 +3,7 @@
 #include "cli.h"
 #include "exr_header.h"
 #include "json_text.h"
+#include "render_options.h"
 #include "report.h"
 
 #include "image/image.h"
@@ -13,10 +14,19 @@
 #include <strings.h>
 
 typedef struct InfoValues {
+    TextList defines;
     bool json, strict;
 } InfoValues;
 
 static const Option info_options[] = {
+    {.kind = OPTION_TEXTS,
+     .letter = 'D',
+     .name = "define",
+     .argument = "NAME=VALUE",
+     .meaning = "The value of $NAME in a Mitsuba scene, before what its <default> says. May be given several times.",
+     .standard = "what the scene says",
+     .example = "sheen info -D spp=64 scene.xml",
+     .offset = offsetof(InfoValues, defines)},
     {.kind = OPTION_FLAG,
      .name = "json",
      .meaning = "One JSON object for machines instead of text.",
@@ -79,10 +89,16 @@ static json_t *cameras_json(const SheenScene *scene)
     json_t *cameras = json_array();
     for (uint32_t i = 0; i < scene->n_cameras; ++i) {
         const SheenCamera *c = &scene->cameras[i];
-        json_array_append_new(cameras,
-                              json_pack("{s:o, s:[I, I], s:f, s:I}", "name", json_text(c->name), "size",
-                                        (json_int_t)c->width, (json_int_t)c->height, "fov_degrees",
-                                        (double)(c->fov_x * 180.0f * SHEEN_INV_PI), "spp", (json_int_t)c->spp));
+        json_t *camera = json_pack("{s:o, s:[I, I]}", "name", json_text(c->name), "size", (json_int_t)c->width,
+                                   (json_int_t)c->height);
+        // Without perspective there is no angle but a width: its picture shows -1 to 1 along its x axis.
+        if (c->orthographic)
+            json_object_set_new(camera, "width",
+                                json_real(2.0 * (double)v3_length(transform_vector(&c->to_world, v3(1, 0, 0)))));
+        else
+            json_object_set_new(camera, "fov_degrees", json_real((double)(c->fov_x * 180.0f * SHEEN_INV_PI)));
+        json_object_set_new(camera, "spp", json_integer((json_int_t)c->spp));
+        json_array_append_new(cameras, camera);
     }
     return cameras;
 }
@@ -211,6 +227,7 @@ static int run_info(int argc, char **argv)
     if (!cli_parse(&command_info, &argc, argv, &values, &code)) return code;
     if (argc < 2) return cli_usage_error(&command_info, "FILE: the file is missing");
     if (argc > 2) return cli_usage_error(&command_info, "FILE: '%s' is one file too many", argv[2]);
+    if (!defines_check(&command_info, &values.defines)) return CLI_USAGE;
     const char *path = argv[1];
     Report report = {.strict = values.strict};
     SheenLog log = report_log(&report);
@@ -222,7 +239,9 @@ static int run_info(int argc, char **argv)
         sheen_image_free(&image);
     } else {
         SheenScene *scene;
-        code = report_exit_code(&report, sheen_scene_load(path, &log, &scene), path);
+        code = report_exit_code(
+            &report, sheen_scene_load_with(path, (SheenDefines){values.defines.items, values.defines.n}, &log, &scene),
+            path);
         if (code == CLI_DONE) info = scene_json(path, scene);
         sheen_scene_destroy(&scene);
     }

@@ -155,7 +155,8 @@ static void print_summary(const Run *run)
 
 static int load(Run *run)
 {
-    SheenStatus status = sheen_scene_load(run->scene_path, &run->log, &run->scene);
+    SheenDefines defines = {run->values.defines.items, run->values.defines.n};
+    SheenStatus status = sheen_scene_load_with(run->scene_path, defines, &run->log, &run->scene);
     run->stats.load = sheen_clock_seconds() - run->start;
     if (status == SHEEN_OK)
         sheen_info(&run->log, "%s: %u shapes, %llu triangles, %u lights", run->scene_path, run->scene->n_shapes,

@@ -4,6 +4,7 @@
 #include "json_text.h"
 
 #include "image/image.h"
+#include "io/defines.h"
 
 #include <string.h>
 
@@ -91,6 +92,15 @@ const Option render_options[] = {
      .example = "--camera 1",
      .recorded = true,
      FIELD(camera)},
+    {.kind = OPTION_TEXTS,
+     .letter = 'D',
+     .name = "define",
+     .argument = "NAME=VALUE",
+     .meaning = "The value of $NAME in a Mitsuba scene, before what its <default> says. May be given several times.",
+     .standard = "what the scene says",
+     .example = "-D spp=64",
+     .recorded = true,
+     FIELD(defines)},
     {.kind = OPTION_COUNT,
      .name = "spp",
      .argument = "N",
@@ -307,9 +317,19 @@ static bool outputs_check(const TextList *outputs)
     return true;
 }
 
+bool defines_check(const Command *command, const TextList *defines)
+{
+    for (size_t i = 0; i < defines->n; ++i) {
+        if (sheen_define_is_valid(defines->items[i])) continue;
+        cli_usage_error(command, "--define: '%s' is not NAME=VALUE", defines->items[i]);
+        return false;
+    }
+    return true;
+}
+
 bool render_values_check(const RenderValues *values)
 {
-    if (!outputs_check(&values->outputs)) return false;
+    if (!outputs_check(&values->outputs) || !defines_check(&command_render, &values->defines)) return false;
     if (values->time_limit > 0.0 && values->integrator != SHEEN_INTEGRATOR_PATH) {
         cli_usage_error(&command_render, "--time-limit: goes with --integrator path only");
         return false;
@@ -372,6 +392,12 @@ static json_t *value_json(const Option *o, const void *field)
     }
     case OPTION_TEXT:
         return json_text(*(const char *const *)field);
+    case OPTION_TEXTS: {
+        const TextList *list = field;
+        json_t *texts = json_array();
+        for (size_t i = 0; i < list->n; ++i) json_array_append_new(texts, json_text(list->items[i]));
+        return texts;
+    }
     default:
         return json_null();
     }

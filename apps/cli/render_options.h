@@ -12,7 +12,7 @@
 
 /** What the options of the table fill. Numbers that are 0 come from the scene or the machine. */
 typedef struct RenderValues {
-    TextList outputs;
+    TextList outputs, defines;
     int integrator; // SheenIntegrator
     PictureSize size;
     const char *camera; // name or index, NULL for the first
@@ -34,6 +34,9 @@ extern const Option render_options[];
 
 /** The values without any option, from the library's own defaults. */
 RenderValues render_values_default(void);
+
+/** @return true when all of --define are NAME=VALUE, or false after a message about the command line. */
+bool defines_check(const Command *command, const TextList *defines);
 
 /**
  * Checks what one option alone cannot show: outputs and their endings, and options that go with one integrator only.

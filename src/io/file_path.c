@@ -12,6 +12,12 @@ bool sheen_path_readable(const char *path)
     return stat(path, &info) == 0 && S_ISREG(info.st_mode) && access(path, R_OK) == 0;
 }
 
+bool sheen_path_is_folder(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+}
+
 bool sheen_path_has_ending(const char *path, const char *ending)
 {
     size_t n = strlen(path), m = strlen(ending);

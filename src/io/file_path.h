@@ -10,6 +10,9 @@
 /** @return true when `path` is a regular file that can be read. */
 bool sheen_path_readable(const char *path);
 
+/** @return true when `path` is a folder. */
+bool sheen_path_is_folder(const char *path);
+
 /** @return true when the path ends in `ending` (".xml"), in any case. */
 bool sheen_path_has_ending(const char *path, const char *ending);
 

@@ -4,6 +4,7 @@
 #define SHEEN_IO_LOAD_H
 
 #include "base/log.h"
+#include "io/defines.h"
 #include "scene/scene.h"
 
 /**
@@ -15,5 +16,9 @@
  * Errors: SHEEN_ERR_IO, SHEEN_ERR_PARSE, SHEEN_ERR_UNSUPPORTED (ending), SHEEN_ERR_NOMEM.
  */
 SHEEN_NODISCARD SheenStatus sheen_scene_load(const char *path, const SheenLog *log, SheenScene **out);
+
+/** The same with values for the $parameters of a Mitsuba scene; another format has none and warns. */
+SHEEN_NODISCARD SheenStatus sheen_scene_load_with(const char *path, SheenDefines defines, const SheenLog *log,
+                                                  SheenScene **out);
 
 #endif

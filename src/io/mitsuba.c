@@ -93,9 +93,11 @@ static void read_scene(Mitsuba *m)
     for (SheenXml *e = m->root->first; e && !m->status; e = e->next) read_top_level(m, e);
 }
 
-/** Takes over the tree in m->scratch. */
-static SheenStatus finish(Mitsuba *m, const char *name, SheenScene **out)
+/** Takes over a tree in m->scratch. */
+static SheenStatus finish(Mitsuba *m, const SheenXmlTree *tree, const char *name, SheenScene **out)
 {
+    m->root = tree->root;
+    m->folders = tree->folders;
     SheenStatus s = sheen_builder_create(m->log, name, &m->builder);
     if (s) return s;
     m->arena = sheen_builder_arena(m->builder);
@@ -107,13 +109,14 @@ static SheenStatus finish(Mitsuba *m, const char *name, SheenScene **out)
     return sheen_builder_commit(&m->builder, out);
 }
 
-SheenStatus sheen_mitsuba_read(const char *path, const SheenLog *log, SheenScene **out)
+SheenStatus sheen_mitsuba_read(const char *path, SheenDefines defines, const SheenLog *log, SheenScene **out)
 {
     *out = NULL;
     Mitsuba m = {.log = log, .with_files = true, .scratch = sheen_arena_create()};
     if (!m.scratch) return sheen_fail(log, SHEEN_ERR_NOMEM, "%s: out of memory", path);
-    SheenStatus s = sheen_xml_read(path, m.scratch, log, &m.root);
-    if (!s) s = finish(&m, path, out);
+    SheenXmlTree tree;
+    SheenStatus s = sheen_xml_read(path, defines, m.scratch, log, &tree);
+    if (!s) s = finish(&m, &tree, path, out);
     sheen_arena_destroy(&m.scratch);
     return s;
 }
@@ -124,8 +127,9 @@ SheenStatus sheen_mitsuba_parse(const char *text, size_t size, const char *name,
     *out = NULL;
     Mitsuba m = {.log = log, .with_files = with_files, .scratch = sheen_arena_create()};
     if (!m.scratch) return sheen_fail(log, SHEEN_ERR_NOMEM, "%s: out of memory", name);
-    SheenStatus s = sheen_xml_parse(text, size, name, with_files, m.scratch, log, &m.root);
-    if (!s) s = finish(&m, name, out);
+    SheenXmlTree tree;
+    SheenStatus s = sheen_xml_parse(text, size, name, with_files, m.scratch, log, &tree);
+    if (!s) s = finish(&m, &tree, name, out);
     sheen_arena_destroy(&m.scratch);
     return s;
 }

@@ -27,9 +27,10 @@ typedef struct Mitsuba {
     SheenArena *arena;   // of the scene
     SheenArena *scratch; // of the tree, gone after reading
     SheenXml *root;
-    SheenXml **ids; // hash table of the elements with an id
-    uint32_t n_ids; // its size, a power of two
-    int version;    // major
+    const SheenXmlFolder *folders; // where files are looked for
+    SheenXml **ids;                // hash table of the elements with an id
+    uint32_t n_ids;                // its size, a power of two
+    int version;                   // major
     bool with_files;
     MitsubaBitmap *bitmaps;
     uint32_t lamp_material; // of lamps without one, counted from 1; 0 when there is none yet
@@ -39,7 +40,8 @@ typedef struct Mitsuba {
 } Mitsuba;
 
 /** Reads a scene file. Errors as in sheen_scene_load. */
-SHEEN_NODISCARD SheenStatus sheen_mitsuba_read(const char *path, const SheenLog *log, SheenScene **out);
+SHEEN_NODISCARD SheenStatus sheen_mitsuba_read(const char *path, SheenDefines defines, const SheenLog *log,
+                                               SheenScene **out);
 
 /** Reads a scene from memory. @param name stands for the file; @param with_files false makes any other file an error */
 SHEEN_NODISCARD SheenStatus sheen_mitsuba_parse(const char *text, size_t size, const char *name, bool with_files,

@@ -104,8 +104,8 @@ static Rgb spectrum_file(Mitsuba *m, const SheenXml *e, const char *name, Mitsub
 {
     uint8_t *data;
     size_t size;
-    char *path = sheen_path_beside(m->scratch, e->file, name);
-    if (!path || !m->with_files || !sheen_path_readable(path)) {
+    const char *path = m->with_files ? sheen_xml_find_file(m->folders, m->scratch, e->file, name) : NULL;
+    if (!path) {
         sheen_mi_fail(m, SHEEN_ERR_IO, e, "cannot open the spectrum '%s'", name);
         return rgb_gray(0.0f);
     }

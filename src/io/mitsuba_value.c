@@ -229,8 +229,12 @@ bool sheen_mi_bool(Mitsuba *m, const SheenXml *e, const char *name, bool otherwi
     const SheenXml *c = sheen_mi_child(e, name);
     const char *text = c ? value_of(m, c) : NULL;
     if (!text) return otherwise;
-    if (sheen_mi_same(text, "true")) return true;
-    if (!sheen_mi_same(text, "false"))
+    char word[8];
+    size_t start = strspn(text, " \t\r\n"), n = strcspn(text + start, " \t\r\n");
+    bool single = n < sizeof word && text[start + n + strspn(text + start + n, " \t\r\n")] == '\0';
+    snprintf(word, sizeof word, "%.*s", single ? (int)n : 0, text + start);
+    if (sheen_mi_same(word, "true")) return true;
+    if (!sheen_mi_same(word, "false"))
         sheen_mi_fail(m, SHEEN_ERR_PARSE, c, "'%s' is neither true nor false: '%.60s'", name, text);
     return false;
 }
@@ -356,14 +360,9 @@ const char *sheen_mi_path(Mitsuba *m, const SheenXml *e, const char *property, c
         sheen_mi_fail(m, SHEEN_ERR_PARSE, e, "%s has no '%s'", what, property);
         return NULL;
     }
-    // Mitsuba looks beside the scene, people who write includes think beside the include.
-    char *path = sheen_path_beside(m->scratch, c->file, name);
-    if (path && m->with_files && sheen_path_readable(path)) return path;
-    char *other = sheen_path_beside(m->scratch, m->root->file, name);
-    if (other && m->with_files && sheen_path_readable(other)) return other;
-    if (!path || !other)
-        sheen_mi_fail(m, SHEEN_ERR_NOMEM, c, "out of memory");
-    else
-        sheen_mi_fail(m, SHEEN_ERR_IO, c, "cannot open the %s '%s'", what, path);
+    const char *path = m->with_files ? sheen_xml_find_file(m->folders, m->scratch, c->file, name) : NULL;
+    if (path) return path;
+    path = sheen_path_beside(m->scratch, c->file, name);
+    sheen_mi_fail(m, SHEEN_ERR_IO, c, "cannot open the %s '%s'", what, path ? path : name);
     return NULL;
 }

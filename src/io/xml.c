@@ -13,6 +13,7 @@
 
 typedef struct Parameter {
     const char *name, *value;
+    bool used;
     struct Parameter *next;
 } Parameter;
 
@@ -21,6 +22,7 @@ typedef struct Document {
     SheenArena *arena;
     const SheenLog *log;
     Parameter *parameters;
+    SheenXmlFolder *folders;
     uint32_t n_includes;
     bool with_files;
 } Document;
@@ -68,9 +70,9 @@ static bool is_name_character(char c)
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
 }
 
-static const Parameter *find_parameter(const Document *d, const char *name, size_t length)
+static Parameter *find_parameter(const Document *d, const char *name, size_t length)
 {
-    for (const Parameter *p = d->parameters; p; p = p->next)
+    for (Parameter *p = d->parameters; p; p = p->next)
         if (strlen(p->name) == length && memcmp(p->name, name, length) == 0) return p;
     return NULL;
 }
@@ -95,11 +97,12 @@ static const char *expand(Source *s, const char *value)
         } else {
             do ++value;
             while (is_name_character(*value));
-            const Parameter *p = find_parameter(s->document, piece + 1, (size_t)(value - piece) - 1);
+            Parameter *p = find_parameter(s->document, piece + 1, (size_t)(value - piece) - 1);
             if (!p) {
                 stop(s, SHEEN_ERR_PARSE, "the parameter '%.*s' is not defined", (int)(value - piece), piece);
                 return NULL;
             }
+            p->used = true;
             piece = p->value;
             length = strlen(piece);
         }
@@ -116,6 +119,14 @@ static const char *expand(Source *s, const char *value)
     return out;
 }
 
+static bool add_parameter(Document *d, const char *name, const char *value)
+{
+    Parameter *p = SHEEN_ARENA_NEW(d->arena, Parameter, 1);
+    if (p) *p = (Parameter){.name = name, .value = value, .next = d->parameters};
+    if (p) d->parameters = p;
+    return p != NULL;
+}
+
 /** <default name= value=>: holds unless the parameter has a value already. */
 static void define_parameter(Source *s, const SheenXml *e)
 {
@@ -125,14 +136,94 @@ static void define_parameter(Source *s, const SheenXml *e)
         stop(s, SHEEN_ERR_PARSE, "<default> needs 'name' and 'value'");
         return;
     }
-    if (find_parameter(d, name, strlen(name))) return;
-    Parameter *p = SHEEN_ARENA_NEW(d->arena, Parameter, 1);
-    if (!p) {
-        stop_out_of_memory(s);
+    if (!find_parameter(d, name, strlen(name)) && !add_parameter(d, name, value)) stop_out_of_memory(s);
+}
+
+bool sheen_define_is_valid(const char *text)
+{
+    const char *end = text;
+    while (is_name_character(*end)) ++end;
+    return end > text && *end == '=';
+}
+
+/** Takes over what is defined from outside. */
+static SheenStatus add_defines(Document *d, SheenDefines defines, const char *path)
+{
+    for (size_t i = 0; i < defines.n; ++i) {
+        const char *text = defines.items[i];
+        if (!sheen_define_is_valid(text))
+            return sheen_fail(d->log, SHEEN_ERR_INVALID, "%s: '%s' is not NAME=VALUE", path, text);
+        char *name = sheen_arena_strdup(d->arena, text);
+        if (!name) return sheen_fail(d->log, SHEEN_ERR_NOMEM, "%s: out of memory", path);
+        char *equals = strchr(name, '=');
+        *equals = '\0';
+        if (!add_parameter(d, name, equals + 1)) return sheen_fail(d->log, SHEEN_ERR_NOMEM, "%s: out of memory", path);
+    }
+    return SHEEN_OK;
+}
+
+static void warn_of_unused(const Document *d, SheenDefines defines, const char *path)
+{
+    for (size_t i = 0; i < defines.n; ++i) {
+        size_t length = strcspn(defines.items[i], "=");
+        if (!find_parameter(d, defines.items[i], length)->used)
+            sheen_warn(d->log, "%s: nothing refers to $%.*s", path, (int)length, defines.items[i]);
+    }
+}
+
+// ---- folders ----------------------------------------------------------------------------------------------------
+
+static const char *find_named(const SheenXmlFolder *folders, SheenArena *arena, const char *beside, const char *name)
+{
+    for (; folders; folders = folders->next) {
+        const char *path = sheen_path_beside(arena, folders->path, name);
+        if (path && sheen_path_readable(path)) return path;
+    }
+    const char *path = sheen_path_beside(arena, beside, name);
+    return path && sheen_path_readable(path) ? path : NULL;
+}
+
+const char *sheen_xml_find_file(const SheenXmlFolder *folders, SheenArena *arena, const char *beside, const char *name)
+{
+    const char *path = find_named(folders, arena, beside, name);
+    if (path || !strchr(name, '\\')) return path;
+    char *slashes = sheen_arena_strdup(arena, name);
+    for (char *c = slashes; c && *c; ++c)
+        if (*c == '\\') *c = '/';
+    return slashes ? find_named(folders, arena, beside, slashes) : NULL;
+}
+
+/** Puts a folder before the others. */
+static bool add_folder(Document *d, const char *path)
+{
+    SheenXmlFolder *f = SHEEN_ARENA_NEW(d->arena, SheenXmlFolder, 1);
+    if (f) *f = (SheenXmlFolder){path, d->folders};
+    if (f) d->folders = f;
+    return f != NULL;
+}
+
+/** <path value=>: one more folder, named as seen from the file. */
+static void add_path(Source *s, const SheenXml *e)
+{
+    Document *d = s->document;
+    const char *value = sheen_xml_attribute(e, "value");
+    if (!value || !*value) {
+        stop(s, SHEEN_ERR_PARSE, "<path> needs 'value'");
         return;
     }
-    *p = (Parameter){name, value, d->parameters};
-    d->parameters = p;
+    if (!d->with_files) return;
+    size_t n = strlen(value);
+    char *name = sheen_arena_alloc(d->arena, n + 2, 1);
+    char *path = NULL;
+    if (name) {
+        memcpy(name, value, n);
+        memcpy(name + n, value[n - 1] == '/' ? "" : "/", 2 - (value[n - 1] == '/'));
+        path = sheen_path_beside(d->arena, s->path, name);
+    }
+    if (!path || !add_folder(d, path))
+        stop_out_of_memory(s);
+    else if (!sheen_path_is_folder(path))
+        sheen_xml_warn(d->log, e, "the folder '%s' is not there", path);
 }
 
 // ---- the tree ---------------------------------------------------------------------------------------------------
@@ -175,7 +266,8 @@ static void append_children(SheenXml *parent, SheenXml *first, SheenXml *last)
     parent->last = last;
 }
 
-/** The children of the included file's root stand in the place of <include>. */
+/** The children of the included file's root stand in the place of <include>; a root that is no <scene> does so itself.
+ */
 static void include(Source *s, const SheenXml *e, SheenXml *parent)
 {
     Document *d = s->document;
@@ -188,13 +280,9 @@ static void include(Source *s, const SheenXml *e, SheenXml *parent)
         stop(s, SHEEN_ERR_PARSE, "%s", d->with_files ? "too many includes" : "includes are not allowed here");
         return;
     }
-    char *path = sheen_path_beside(d->arena, s->path, name);
+    const char *path = sheen_xml_find_file(d->folders, d->arena, s->path, name);
     if (!path) {
-        stop_out_of_memory(s);
-        return;
-    }
-    if (!sheen_path_readable(path)) {
-        stop(s, SHEEN_ERR_IO, "cannot open the included file '%s'", path);
+        stop(s, SHEEN_ERR_IO, "cannot open the included file '%s'", name);
         return;
     }
     SheenXml *root = NULL;
@@ -204,8 +292,10 @@ static void include(Source *s, const SheenXml *e, SheenXml *parent)
     } else if (status) {
         s->status = status; // reported at its own place
         XML_StopParser(s->parser, XML_FALSE);
-    } else {
+    } else if (strcmp(root->tag, "scene") == 0) {
         append_children(parent, root->first, root->last);
+    } else {
+        append_children(parent, root, root);
     }
 }
 
@@ -226,6 +316,8 @@ static void XMLCALL on_start(void *user, const char *tag, const char **attribute
         include(s, e, parent);
     else if (strcmp(tag, "default") == 0)
         define_parameter(s, e);
+    else if (strcmp(tag, "path") == 0)
+        add_path(s, e);
     else if (parent)
         append_children(parent, e, e);
 }
@@ -256,6 +348,17 @@ static void XMLCALL on_entity(void *user, const char *name, int is_parameter, co
     stop(user, SHEEN_ERR_PARSE, "the entity '%s' is declared: entities are not allowed", name);
 }
 
+/** Encodings that expat does not know, most likely of one byte a letter: read as Latin-1, which names survive. */
+static int XMLCALL on_encoding(void *user, const char *name, XML_Encoding *info)
+{
+    (void)user, (void)name;
+    for (int i = 0; i < 256; ++i) info->map[i] = i;
+    info->data = NULL;
+    info->convert = NULL;
+    info->release = NULL;
+    return XML_STATUS_OK;
+}
+
 // ---- files ------------------------------------------------------------------------------------------------------
 
 static SheenStatus parse(Source *s, const char *text, size_t size)
@@ -266,6 +369,7 @@ static SheenStatus parse(Source *s, const char *text, size_t size)
     XML_SetElementHandler(s->parser, on_start, on_end);
     XML_SetCharacterDataHandler(s->parser, on_text);
     XML_SetEntityDeclHandler(s->parser, on_entity);
+    XML_SetUnknownEncodingHandler(s->parser, on_encoding, NULL);
     // Fed in pieces: expat counts bytes in int.
     const size_t piece = (size_t)1 << 28;
     enum XML_Status ok = XML_STATUS_OK;
@@ -306,25 +410,30 @@ static SheenStatus read_source(Document *document, const Source *outer, const ch
     return status;
 }
 
-SheenStatus sheen_xml_read(const char *path, SheenArena *arena, const SheenLog *log, SheenXml **root)
+SheenStatus sheen_xml_read(const char *path, SheenDefines defines, SheenArena *arena, const SheenLog *log,
+                           SheenXmlTree *out)
 {
-    *root = NULL;
+    *out = (SheenXmlTree){0};
     Document d = {.arena = arena, .log = log, .with_files = true};
-    SheenXml *tree = NULL;
-    SheenStatus status = read_source(&d, NULL, path, &tree);
-    if (!status) *root = tree;
-    return status;
+    SheenXml *root = NULL;
+    SheenStatus status = add_defines(&d, defines, path);
+    if (!status && !add_folder(&d, path)) status = sheen_fail(log, SHEEN_ERR_NOMEM, "%s: out of memory", path);
+    if (!status) status = read_source(&d, NULL, path, &root);
+    if (status) return status;
+    warn_of_unused(&d, defines, path);
+    *out = (SheenXmlTree){root, d.folders};
+    return SHEEN_OK;
 }
 
 SheenStatus sheen_xml_parse(const char *text, size_t size, const char *name, bool with_files, SheenArena *arena,
-                            const SheenLog *log, SheenXml **root)
+                            const SheenLog *log, SheenXmlTree *out)
 {
-    *root = NULL;
+    *out = (SheenXmlTree){0};
     Document d = {.arena = arena, .log = log, .with_files = with_files};
     Source s = {.document = &d, .path = sheen_arena_strdup(arena, name)};
-    if (!s.path) return sheen_fail(log, SHEEN_ERR_NOMEM, "%s: out of memory", name);
+    if (!s.path || !add_folder(&d, name)) return sheen_fail(log, SHEEN_ERR_NOMEM, "%s: out of memory", name);
     SheenStatus status = parse(&s, text, size);
-    if (!status) *root = s.root;
+    if (!status) *out = (SheenXmlTree){s.root, d.folders};
     return status;
 }
 

@@ -49,6 +49,25 @@ done
 expect 0 info "$SOURCE/fuzz/corpus/image/parts_depth_first.exr"; says "of 2 parts, part 'beauty' is taken\$"
 grep -Eq '^channels +depth\.Z, beauty\.B, beauty\.G, beauty\.R$' out || fail "info does not tell the parts' channels"
 
+# -D gives a scene's $parameters, and a camera without perspective has a width in place of an angle.
+cat >asked.xml <<'END'
+<scene version="3.0.0">
+    <default name="side" value="8"/>
+    <sensor type="orthographic">
+        <transform name="to_world"><scale x="3" y="3"/></transform>
+        <film type="hdrfilm"><integer name="width" value="$side"/><integer name="height" value="$side"/></film>
+    </sensor>
+    <emitter type="constant"/>
+</scene>
+END
+expect 0 info asked.xml -D side=16; silent
+grep -Eq '^cameras +name camera, size \(16, 16\), width 6, spp 0$' out || fail "info tells of another camera"
+expect 0 render asked.xml -Dside=4 -o asked.exr "${SMALL[@]:2}" --quiet; expect 0 info asked.exr
+grep -Eq '^size +4, 4$' out || fail "-D did not reach the picture"
+expect 0 info asked.xml --define=of=1; says '^sheen: warning: asked.xml: nothing refers to \$of$'
+refused --define info asked.xml -D side
+refused --define render asked.xml -D =1 -o asked.exr
+
 # A file's own text reaches the terminal neither as a command nor as a second line.
 name=$(printf 'e\033[31mvil\n.xml')
 cat >"$name" <<'END'
