@@ -2,8 +2,9 @@
 """Opens the page of `sheen compare --html` in Chromium and uses it, as a person at a desk and one with a phone would.
 
 Renders three small pictures, compares them, and checks at 1280 x 900 with a mouse and a keyboard, and at 390 x 844 with
-a finger: nothing fails in the script; the canvases hold the pictures; slider, exposure, error map and choice of the
-image do what they say; nothing is wider than the window; a finger can still scroll the page.
+a finger: nothing fails in the script; the canvases hold the pictures; slider, exposure, error map and the choice of the
+image and, of folders, of the picture do what they say; nothing is wider than the window; a finger can still scroll the
+page.
 
 Usage: tools/check_compare_page.py [--sheen PROGRAM] [--keep FOLDER]      about 20 seconds
 Needs Chromium (`chromium`, or the program named by CHROMIUM) and nothing beyond Python's library: it talks to the
@@ -134,7 +135,7 @@ def check(what, holds, seen=""):
 
 # The mean difference, in steps of 1 / 255, of a canvas from a picture of the chosen section; the mean of a canvas.
 DIFFERENCE = """((canvas, role) => {
-  const section = sections[$('which').selectedIndex], image = section.querySelector('img.' + role);
+  const image = section.querySelector('img.' + role);
   const copy = new OffscreenCanvas(image.naturalWidth, image.naturalHeight).getContext('2d');
   copy.drawImage(image, 0, 0);
   const a = $(canvas).getContext('2d').getImageData(0, 0, image.naturalWidth, image.naturalHeight).data;
@@ -146,9 +147,15 @@ MEAN = """(() => { const c = $('under'), d = c.getContext('2d').getImageData(0, 
 RIGHT, DOWN = ("ArrowRight", 39), ("ArrowDown", 40)
 
 
+def check_width(b):
+    wide = b.value("document.documentElement.scrollWidth")
+    check("nothing is wider than the window", wide <= b.value("window.innerWidth"), wide)
+
+
 def check_page(b):
     check("the script has no errors", not b.complaints(), b.complaints())
     check("the viewer is there", b.value("!$('viewer').hidden"))
+    check("there is no choice of one picture", b.value("$('several').offsetHeight") == 0)
     # A Radiance file keeps 8 bits of the largest channel, which is up to some steps in a darker one, .1 in the mean.
     for canvas, role in (("over", "reference"), ("under", "image")):
         off = b.value(f"{DIFFERENCE}('{canvas}', '{role}')")
@@ -156,10 +163,10 @@ def check_page(b):
     left, _, width, _ = b.box("stage")
     window = b.value("window.innerWidth")
     check("the stage is in the window", left >= 0 and left + width <= window, (left, width))
-    check("nothing is wider than the window", b.value("document.documentElement.scrollWidth") <= window,
-          b.value("document.documentElement.scrollWidth"))
+    check_width(b)
     check("controls are high enough for a finger", b.value(
         "Math.min(...[...document.querySelectorAll('#controls select, #controls input')]"
+        ".filter(e => e.offsetParent)"
         ".map(e => e.getBoundingClientRect().height))") >= 24)
 
 
@@ -188,6 +195,28 @@ def check_keys(b):
           and b.value(f"{DIFFERENCE}('under', 'error')") == 0)
 
 
+def check_choice(b):
+    """The page of two folders with two pictures each."""
+    check("the script has no errors", not b.complaints(), b.complaints())
+    check("pictures are there to choose from",
+          b.value("!$('several').hidden && [...$('picture').options].map(o => o.text).join()") == "box,round")
+    check("images are those of one picture", b.value("$('which').options.length") == 2)
+    b.value("$('which').focus()")
+    b.key(*DOWN)
+    shown = b.value("$('which').value")
+    b.value("$('picture').focus()")
+    b.key(*DOWN)
+    check("a key shows the next picture", b.value("section.dataset.picture") == "round",
+          b.value("section.dataset.picture"))
+    check("the image stays that of the operand",
+          b.value("section.dataset.image") == shown == b.value("$('which').value"))
+    for canvas, role in (("over", "reference"), ("under", "image")):
+        off = b.value(f"{DIFFERENCE}('{canvas}', '{role}')")
+        check(f"its {role} is drawn, in its size", off <= 0.3 and b.value(f"$('{canvas}').height") == 120,
+              (off, b.value(f"$('{canvas}').height")))
+    check_width(b)
+
+
 def check_mouse(b):
     left, top, width, height = b.box("stage")
     for share in (0.25, 0.8):
@@ -214,15 +243,26 @@ def check_finger(b):
           (before, b.value("window.scrollY")))
 
 
-def make_page(sheen, folder):
-    scene = ROOT / "scenes" / "cornell-box.xml"
-    for name, spp, seed in (("reference", 64, 1), ("noisy", 2, 2), ("better", 16, 3)):
-        subprocess.run([sheen, "render", scene, "--integrator", "path", "--size", "360x240", "--spp", str(spp), "--seed",
-                        str(seed), "--progress", "none", "-o", folder / f"{name}.exr"], check=True)
-    page = folder / "page.html"
-    subprocess.run([sheen, "compare", *(folder / f"{n}.exr" for n in ("reference", "noisy", "better")), "--html", page],
-                   check=True, stdout=subprocess.DEVNULL)
+QUALITIES = {"reference": 64, "noisy": 2, "better": 16}  # samples a pixel
+
+
+def compare(sheen, page, operands):
+    subprocess.run([sheen, "compare", *operands, "--html", page], check=True, stdout=subprocess.DEVNULL)
     return page
+
+
+def make_pages(sheen, folder):
+    """A page of two images, and one of two folders with two pictures each, of another size."""
+    for seed, (quality, spp) in enumerate(QUALITIES.items()):
+        (folder / quality).mkdir(exist_ok=True)
+        for scene, size, path in (("cornell-box", "360x240", f"{quality}.exr"),
+                                  ("cornell-box", "180x160", f"{quality}/box.exr"),
+                                  ("furnace", "180x120", f"{quality}/round.exr")):
+            subprocess.run([sheen, "render", ROOT / "scenes" / f"{scene}.xml", "--integrator", "path", "--size", size,
+                            "--spp", str(spp), "--seed", str(seed), "--progress", "none", "-o", folder / path],
+                           check=True)
+    return (compare(sheen, folder / "page.html", [folder / f"{q}.exr" for q in QUALITIES]),
+            compare(sheen, folder / "pictures.html", [folder / q for q in QUALITIES]))
 
 
 def main():
@@ -237,7 +277,7 @@ def main():
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(options.keep or temporary).resolve()
         folder.mkdir(parents=True, exist_ok=True)
-        page = make_page(options.sheen, folder)
+        page, pictures = make_pages(options.sheen, folder)
         browser = Browser(chromium, pathlib.Path(temporary) / "profile")
         try:
             for name, width, height, phone in (("desk", 1280, 900, False), ("phone", 390, 844, True)):
@@ -249,6 +289,9 @@ def main():
                 browser.picture(folder / f"{name}-moved.png")
                 check_keys(browser)
                 browser.picture(folder / f"{name}-error.png")
+                browser.open(pictures, width, height, phone)
+                check_choice(browser)
+                browser.picture(folder / f"{name}-pictures.png")
         finally:
             browser.close()
     print(f"check_compare_page: {len(failures)} of the above failed" if failures else "check_compare_page: all holds")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `sheen compare`: error figures of pictures, or frame by frame of animations, as JSON.
+// `sheen compare`: error figures of pictures, of folders of pictures, or frame by frame of animations, as JSON.
 #include "cli.h"
 #include "compare_page.h"
 #include "json_text.h"
@@ -24,7 +24,8 @@ static const Option compare_options[] = {
      .name = "html",
      .argument = "FILE",
      .meaning = "Write one self-contained page to look at: the images side by side with a slider, the error map, the "
-                "figures, an exposure control. Of animations it shows the frame with the largest FLIP.",
+                "figures, an exposure control. Of folders whose pictures have names it shows all, to choose from; of "
+                "animations the frame with the largest FLIP.",
      .standard = "none",
      .example = "sheen compare --html errors.html reference.exr box.exr",
      .offset = offsetof(CompareValues, html)},
@@ -42,8 +43,8 @@ typedef struct Comparison {
     const char *reference;    // as given
     const char *image;        // as given
     Sequence references, own; // one frame each for single pictures
-    bool animated;
-    ComparePage *page; // NULL without --html
+    bool several;             // folders or patterns, and not single pictures
+    ComparePage *page;        // NULL without --html
 } Comparison;
 
 /** A number as JSON; null for what JSON cannot say: infinity of equal pictures, NaN of nothing compared. */
@@ -60,8 +61,7 @@ static json_t *figures_json(const SheenMetrics *m)
                      (json_int_t)m->nonfinite);
 }
 
-/** Figures of an animation: means over its frames; bias and PSNR from the means, so that they are those of all pixels.
- */
+/** Figures of several pictures: means over them; bias and PSNR from the means, so that they are those of all pixels. */
 typedef struct Totals {
     SheenMetrics sum; // of frames; peak: the largest
     double flicker;
@@ -123,6 +123,17 @@ static SheenStatus add_flicker(const Comparison *c, size_t frame, const SheenIma
     return SHEEN_OK;
 }
 
+/** The object of one of several pictures: what tells it from the others, and its figures. */
+static json_t *frame_json(const Comparison *c, const SequenceFrame *frame, const SheenMetrics *m)
+{
+    json_t *entry = c->own.numbered ? json_pack("{s:I}", "frame", (json_int_t)frame->number)
+                                    : json_pack("{s:o}", "picture", json_text(frame->name));
+    json_t *figures = figures_json(m);
+    if (entry && figures) json_object_update(entry, figures);
+    json_decref(figures);
+    return entry;
+}
+
 /** Compares all frames, of which two are in memory at a time. @param frames  array that gains an object for each */
 static SheenStatus compare_frames(const Comparison *c, Totals *t, json_t *frames)
 {
@@ -132,15 +143,13 @@ static SheenStatus compare_frames(const Comparison *c, Totals *t, json_t *frames
         SheenMetrics m;
         status = read_pair(c, i, &reference[1], &image[1]);
         if (!status) status = sheen_metrics_compute(&reference[1], &image[1], &c->log, &m);
-        if (!status && i > 0) status = add_flicker(c, i, reference, image, t);
-        if (!status && c->page)
-            status = compare_page_offer(c->page, c->image, c->own.frames[i].number, &reference[1], &image[1], &m);
+        const SequenceFrame *frame = &c->own.frames[i];
+        if (!status && i > 0 && c->own.numbered) status = add_flicker(c, i, reference, image, t);
+        if (!status && c->page) status = compare_page_offer(c->page, c->image, frame, &reference[1], &image[1], &m);
         if (!status) {
             add_frame(t, &m);
-            json_t *figures = figures_json(&m);
-            json_t *entry = json_pack("{s:I}", "frame", (json_int_t)c->own.frames[i].number);
-            if (entry && figures) json_object_update(entry, figures);
-            json_decref(figures);
+            json_t *entry = frame_json(c, frame, &m);
+            if (c->page && !c->own.numbered) compare_page_finish(c->page, frame->name, entry);
             json_array_append_new(frames, entry);
         }
         sheen_image_free(&reference[0]);
@@ -167,41 +176,48 @@ static json_t *compare_one(const Comparison *c, SheenStatus *status)
         json_t *figures = figures_json(&m);
         if (result && figures) json_object_update(result, figures);
         json_decref(figures);
-        if (result && c->animated) {
+        if (result && c->several && c->own.numbered)
             json_object_set_new(result, "flicker", number(t.flicker / (double)t.n_flicker));
-            json_object_set(result, "frames", frames);
-        }
-        if (result && c->page) compare_page_finish(c->page, result);
+        if (result && c->several) json_object_set(result, c->own.numbered ? "frames" : "pictures", frames);
+        if (result && c->page && c->own.numbered) compare_page_finish(c->page, NULL, result);
         if (!result) *status = sheen_fail(&c->log, SHEEN_ERR_NOMEM, "%s: out of memory", c->image);
     }
     json_decref(frames);
     return result;
 }
 
-static bool list(const char *path, bool animated, Sequence *out)
+static bool list(const char *path, bool several, Sequence *out)
 {
-    if (animated) return sequence_list(path, out);
-    *out = (Sequence){calloc(1, sizeof *out->frames), 0};
+    if (several) return sequence_list(path, out);
+    *out = (Sequence){.frames = calloc(1, sizeof *out->frames), .numbered = true};
     char *copy = strdup(path);
     if (!out->frames || !copy) {
         free(copy);
         cli_error("%s: out of memory", path);
         return false;
     }
-    out->frames[out->n++] = (SequenceFrame){copy, 0};
+    out->frames[out->n++] = (SequenceFrame){.path = copy, .number = -1};
     return true;
 }
 
-/** Frames are matched by their numbers, and none may be left over. */
-static bool check_frames(const Comparison *c)
+/** Frames are matched by their numbers, other pictures by their names, and none may be left over. */
+static bool match(Comparison *c)
 {
+    if (c->references.numbered != c->own.numbered &&
+        (!sequence_use_names(c->reference, &c->references) || !sequence_use_names(c->image, &c->own)))
+        return false;
+    bool numbered = c->own.numbered;
     for (size_t i = 0; i < c->references.n || i < c->own.n; ++i) {
-        bool in_reference = i < c->references.n, in_own = i < c->own.n;
-        if (in_reference && in_own && c->references.frames[i].number == c->own.frames[i].number) continue;
-        bool own_missing = in_reference && (!in_own || c->references.frames[i].number < c->own.frames[i].number);
-        cli_error("%s: frame %ld is not there, but it is in '%s'", own_missing ? c->image : c->reference,
-                  own_missing ? c->references.frames[i].number : c->own.frames[i].number,
-                  own_missing ? c->reference : c->image);
+        const SequenceFrame *reference = i < c->references.n ? &c->references.frames[i] : NULL;
+        const SequenceFrame *own = i < c->own.n ? &c->own.frames[i] : NULL;
+        int order = !reference ? 1 : !own ? -1 : sequence_compare(reference, own, numbered);
+        if (order == 0) continue;
+        const char *where = order < 0 ? c->image : c->reference, *there = order < 0 ? c->reference : c->image;
+        const SequenceFrame *missing = order < 0 ? reference : own;
+        if (numbered)
+            cli_error("%s: frame %ld is not there, but it is in '%s'", where, missing->number, there);
+        else
+            cli_error("%s: the picture '%s' is not there, but it is in '%s'", where, missing->name, there);
         return false;
     }
     return true;
@@ -220,8 +236,8 @@ static int print_json(json_t *results)
 static int compare_all(int argc, char **argv, Report *report, ComparePage *page)
 {
     Comparison c = {.log = report_log(report), .reference = argv[1], .page = page};
-    c.animated = sequence_is(argv[1]);
-    if (!list(argv[1], c.animated, &c.references)) {
+    c.several = sequence_is(argv[1]);
+    if (!list(argv[1], c.several, &c.references)) {
         sequence_free(&c.references);
         return CLI_WORLD;
     }
@@ -230,7 +246,7 @@ static int compare_all(int argc, char **argv, Report *report, ComparePage *page)
     for (int i = 2; i < argc && code == CLI_DONE; ++i) {
         c.image = argv[i];
         SheenStatus status = SHEEN_OK;
-        if (!list(argv[i], c.animated, &c.own) || !check_frames(&c)) {
+        if (!list(argv[i], c.several, &c.own) || !match(&c)) {
             code = CLI_WORLD;
         } else {
             json_array_append_new(results, compare_one(&c, &status));
@@ -257,7 +273,7 @@ static int run_compare(int argc, char **argv)
     }
     for (int i = 2; i < argc; ++i) {
         if (sequence_is(argv[i]) != sequence_is(argv[1]))
-            return cli_usage_error(&command_compare, "IMAGE: of '%s' and '%s' one is a picture and one an animation",
+            return cli_usage_error(&command_compare, "IMAGE: of '%s' and '%s' one is a picture and one is several",
                                    argv[i], argv[1]);
     }
     if (values.html && !output_check(values.html, false)) return CLI_WORLD;
@@ -281,8 +297,11 @@ const Command command_compare = {
         "and nonfinite, the number of values that are NaN or infinite and left out.\n"
         "With folders or patterns such as dir/name.####.exr it compares frame by frame, matched by their numbers: the "
         "figures are means over the frames, followed by flicker, the mean of |(x' - x) - (r' - r)| / (r + 0.1) over "
-        "pixels and consecutive frames, and frames, the figures of each.\n"
-        "Pictures may be EXR, HDR, PFM, PNG, JPEG, TGA or BMP, of one size.",
+        "pixels and consecutive frames, and frames, the figures of each. Folders in which a name has no number hold no "
+        "animation: their pictures are matched by their names without the ending, and pictures has the figures of "
+        "each, "
+        "without flicker.\n"
+        "Pictures may be EXR, HDR, PFM, PNG, JPEG, TGA or BMP; each has the size of its reference.",
     .options = compare_options,
     .example = "sheen compare reference.exr box.exr",
     .run = run_compare,

@@ -11,12 +11,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { max_operands = 4096 }; // of one command line; more is not a page to look at
+enum { max_entries = 4096 }; // more is not a page to look at
 
-/** One operand: its worst frame, encoded for the page. */
+/** One picture beside its reference, encoded for the page: an operand, its worst frame, or one of its pictures. */
 typedef struct PageEntry {
-    const char *name;
-    char *figures; // "mse 0.1, ..." as table cells, once finished
+    const char *name; // of the operand
+    char *picture;    // NULL where the operand is one picture or an animation
+    char *figures;    // "mse 0.1, ..." as table cells, once finished
     long frame;
     double flip;
     uint32_t width, height;
@@ -53,6 +54,7 @@ void compare_page_destroy(ComparePage **page)
     if (!*page) return;
     for (size_t i = 0; i < (*page)->n; ++i) {
         entry_clear_pictures(&(*page)->entries[i]);
+        free((*page)->entries[i].picture);
         free((*page)->entries[i].figures);
     }
     free((*page)->entries);
@@ -119,11 +121,11 @@ static SheenStatus encode_error(const ComparePage *page, const SheenImage *refer
     return status;
 }
 
-/** @return the entry of the operand, a new one if it is offered for the first time; NULL when there is no room. */
+/** @return the entry that is not finished, a new one if there is none; NULL when there is no room. */
 static PageEntry *open_entry(ComparePage *page)
 {
     if (page->open) return &page->entries[page->n - 1];
-    PageEntry *grown = page->n < max_operands ? realloc(page->entries, (page->n + 1) * sizeof *grown) : NULL;
+    PageEntry *grown = page->n < max_entries ? realloc(page->entries, (page->n + 1) * sizeof *grown) : NULL;
     if (!grown) return NULL;
     page->entries = grown;
     page->open = true;
@@ -131,8 +133,8 @@ static PageEntry *open_entry(ComparePage *page)
     return &grown[page->n++];
 }
 
-SheenStatus compare_page_offer(ComparePage *page, const char *name, long frame, const SheenImage *reference,
-                               const SheenImage *image, const SheenMetrics *figures)
+SheenStatus compare_page_offer(ComparePage *page, const char *name, const SequenceFrame *frame,
+                               const SheenImage *reference, const SheenImage *image, const SheenMetrics *figures)
 {
     PageEntry *e = open_entry(page);
     if (!e) return sheen_fail(&page->log, SHEEN_ERR_NOMEM, "%s: out of memory", page->path);
@@ -140,7 +142,7 @@ SheenStatus compare_page_offer(ComparePage *page, const char *name, long frame, 
     if (flip <= e->flip) return SHEEN_OK;
     entry_clear_pictures(e);
     e->name = name;
-    e->frame = frame;
+    e->frame = frame->number;
     e->flip = flip;
     e->width = image->width;
     e->height = image->height;
@@ -156,9 +158,11 @@ static const char *const figure_names[] = {"mse",  "rmse", "relmse", "mae",     
                                            "flip", "ssim", "bias",   "nonfinite", "flicker"};
 enum { n_figures = sizeof figure_names / sizeof figure_names[0] };
 
-void compare_page_finish(ComparePage *page, json_t *result)
+void compare_page_finish(ComparePage *page, const char *picture, json_t *result)
 {
     page->open = false;
+    PageEntry *e = &page->entries[page->n - 1];
+    e->picture = picture ? strdup(picture) : NULL; // NULL when out of memory: shown by the operand's name alone
     TextBuffer cells = {0};
     for (int i = 0; i < n_figures; ++i) {
         const json_t *value = json_object_get(result, figure_names[i]);
@@ -167,7 +171,7 @@ void compare_page_finish(ComparePage *page, json_t *result)
         else
             text_add(&cells, "<td>-</td>");
     }
-    page->entries[page->n - 1].figures = cells.text; // NULL when out of memory: an empty row
+    e->figures = cells.text; // NULL when out of memory: an empty row
 }
 
 static void add_lines(TextBuffer *out, const char *const lines[])
@@ -178,10 +182,31 @@ static void add_lines(TextBuffer *out, const char *const lines[])
     }
 }
 
-static void add_name(TextBuffer *out, const ComparePage *page, const PageEntry *e)
+/** @return true when the page shows several operands, so that a picture's name alone does not say which it is. */
+static bool several_operands(const ComparePage *page)
+{
+    return strcmp(page->entries[0].name, page->entries[page->n - 1].name) != 0;
+}
+
+static void add_image_name(TextBuffer *out, const PageEntry *e)
 {
     text_add_escaped(out, e->name);
-    if (page->entries[0].frame != e->frame || e->frame != 0) text_add_format(out, ", frame %ld", e->frame);
+    if (!e->picture && e->frame >= 0) text_add_format(out, ", frame %ld", e->frame);
+}
+
+static void add_name(TextBuffer *out, const ComparePage *page, const PageEntry *e)
+{
+    if (e->picture) text_add_escaped(out, e->picture);
+    if (e->picture && several_operands(page)) text_add(out, ", ");
+    if (!e->picture || several_operands(page)) add_image_name(out, e);
+}
+
+/** @return the first entry that shows the same reference. */
+static const PageEntry *first_with_reference(const ComparePage *page, const PageEntry *e)
+{
+    const PageEntry *first = page->entries;
+    while (strcmp(first->reference_hdr.text, e->reference_hdr.text) != 0) ++first;
+    return first;
 }
 
 static void add_picture(TextBuffer *out, const char *role, const char *caption, const TextBuffer *png)
@@ -193,16 +218,20 @@ static void add_picture(TextBuffer *out, const char *role, const char *caption, 
 
 static void add_entry(TextBuffer *out, const ComparePage *page, const PageEntry *e)
 {
-    text_add_format(out, "<section data-width=\"%u\" data-height=\"%u\">\n<h2>", e->width, e->height);
+    const PageEntry *first = first_with_reference(page, e);
+    text_add_format(out, "<section data-width=\"%u\" data-height=\"%u\" data-reference=\"%zu\" data-picture=\"",
+                    e->width, e->height, (size_t)(first - page->entries));
+    text_add_escaped(out, e->picture ? e->picture : "");
+    text_add(out, "\" data-image=\"");
+    add_image_name(out, e);
+    text_add(out, "\">\n<h2>");
     add_name(out, page, e);
     text_add(out, "</h2>\n<div class=\"row\">\n");
     add_picture(out, "reference", "reference", &e->reference_png);
     add_picture(out, "image", "image", &e->image_png);
     add_picture(out, "error", "error (FLIP, 0 black to 1 yellow)", &e->error_png);
     text_add(out, "</div>\n<script type=\"text/plain\" class=\"reference-hdr\">");
-    // Usually all have one reference: the script takes the first where this is empty.
-    bool same = e != page->entries && strcmp(e->reference_hdr.text, page->entries[0].reference_hdr.text) == 0;
-    text_add(out, same ? "" : e->reference_hdr.text);
+    text_add(out, e == first ? e->reference_hdr.text : ""); // the script finds it there
     text_add(out, "</script>\n<script type=\"text/plain\" class=\"image-hdr\">");
     text_add(out, e->image_hdr.text);
     text_add(out, "</script>\n</section>\n");
@@ -215,7 +244,7 @@ static void add_table(TextBuffer *out, const ComparePage *page)
     text_add(out, "</tr>\n");
     for (size_t i = 0; i < page->n; ++i) {
         text_add(out, "<tr><th>");
-        text_add_escaped(out, page->entries[i].name);
+        add_name(out, page, &page->entries[i]);
         text_add(out, "</th>");
         text_add(out, page->entries[i].figures ? page->entries[i].figures : "");
         text_add(out, "</tr>\n");
@@ -234,8 +263,10 @@ bool compare_page_write(ComparePage *page)
     text_add(&out, "</style>\n</head>\n<body>\n<h1>Compared with ");
     text_add_escaped(&out, page->reference);
     text_add(&out, "</h1>\n");
-    add_table(&out, page);
+    bool long_table = page->n > 4; // it would hide the stage
+    if (!long_table) add_table(&out, page);
     add_lines(&out, compare_controls);
+    if (long_table) add_table(&out, page);
     for (size_t i = 0; i < page->n; ++i) add_entry(&out, page, &page->entries[i]);
     text_add(&out, "<script>\n");
     add_lines(&out, compare_script);

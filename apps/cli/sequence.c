@@ -58,35 +58,44 @@ static bool last_number(const char *name, long *number)
     return first < end;
 }
 
-static bool add_frame(Sequence *s, const char *folder, size_t folder_size, const char *name, long number)
+static bool add_frame(Sequence *s, const char *folder, size_t folder_size, const char *file, long number)
 {
     SequenceFrame *grown = realloc(s->frames, (s->n + 1) * sizeof *grown);
     if (!grown) return false;
     s->frames = grown;
-    size_t size = folder_size + strlen(name) + 1;
-    char *path = malloc(size);
-    if (!path) return false;
+    size_t size = folder_size + strlen(file) + 1;
+    const char *dot = strrchr(file, '.');
+    char *path = malloc(size), *name = dot ? strndup(file, (size_t)(dot - file)) : strdup(file);
+    if (!path || !name) {
+        free(path);
+        free(name);
+        return false;
+    }
     memcpy(path, folder, folder_size);
-    memcpy(path + folder_size, name, size - folder_size);
-    s->frames[s->n++] = (SequenceFrame){path, number};
+    memcpy(path + folder_size, file, size - folder_size);
+    s->frames[s->n++] = (SequenceFrame){path, name, number};
     return true;
 }
 
-static int by_path(const void *a, const void *b)
+int sequence_compare(const SequenceFrame *a, const SequenceFrame *b, bool numbered)
 {
-    return strcmp(((const SequenceFrame *)a)->path, ((const SequenceFrame *)b)->path);
+    return numbered ? (a->number > b->number) - (a->number < b->number) : strcmp(a->name, b->name);
+}
+
+static int by_name(const void *a, const void *b)
+{
+    int order = sequence_compare(a, b, false);
+    return order ? order : strcmp(((const SequenceFrame *)a)->path, ((const SequenceFrame *)b)->path);
 }
 
 static int by_number(const void *a, const void *b)
 {
-    long x = ((const SequenceFrame *)a)->number, y = ((const SequenceFrame *)b)->number;
-    return x != y ? (x > y) - (x < y) : by_path(a, b);
+    int order = sequence_compare(a, b, true);
+    return order ? order : by_name(a, b);
 }
 
-/** Collects the files. @param pattern  NULL takes all pictures; @param numbered  becomes false if a name has no number
- */
-static bool collect(const char *path, const char *folder, size_t folder_size, const char *pattern, Sequence *out,
-                    bool *numbered)
+/** Collects the files. @param pattern  NULL takes all pictures */
+static bool collect(const char *path, const char *folder, size_t folder_size, const char *pattern, Sequence *out)
 {
     char *name = folder_size ? strndup(folder, folder_size) : strdup(".");
     DIR *dir = name ? opendir(name) : NULL;
@@ -101,7 +110,7 @@ static bool collect(const char *path, const char *folder, size_t folder_size, co
         if (pattern ? !match_pattern(pattern, e->d_name, &number)
                     : e->d_name[0] == '.' || !sheen_image_readable_format(e->d_name))
             continue;
-        if (!pattern && !last_number(e->d_name, &number)) *numbered = false;
+        if (!pattern && !last_number(e->d_name, &number)) out->numbered = false;
         ok = add_frame(out, folder, folder_size, e->d_name, number);
     }
     closedir(dir);
@@ -109,10 +118,34 @@ static bool collect(const char *path, const char *folder, size_t folder_size, co
     return ok;
 }
 
+/** Sorts; no two may be alike. */
+static bool sort(const char *path, Sequence *s)
+{
+    qsort(s->frames, s->n, sizeof *s->frames, s->numbered ? by_number : by_name);
+    for (size_t i = 1; i < s->n; ++i) {
+        const SequenceFrame *a = &s->frames[i - 1], *b = &s->frames[i];
+        if (sequence_compare(a, b, s->numbered) != 0) continue;
+        if (s->numbered)
+            cli_error("%s: both '%s' and '%s' are frame %ld", path, last_part(a->path), last_part(b->path), b->number);
+        else
+            cli_error("%s: both '%s' and '%s' are the picture '%s'", path, last_part(a->path), last_part(b->path),
+                      b->name);
+        return false;
+    }
+    return true;
+}
+
+bool sequence_use_names(const char *path, Sequence *sequence)
+{
+    if (!sequence->numbered) return true;
+    sequence->numbered = false;
+    return sort(path, sequence);
+}
+
 bool sequence_list(const char *path, Sequence *out)
 {
-    *out = (Sequence){0};
-    bool numbered = true, ok;
+    *out = (Sequence){.numbered = true};
+    bool ok;
     if (is_folder(path)) {
         size_t n = strlen(path);
         char *folder = malloc(n + 2);
@@ -122,34 +155,26 @@ bool sequence_list(const char *path, Sequence *out)
         }
         memcpy(folder, path, n + 1);
         if (folder[n - 1] != '/') folder[n++] = '/';
-        ok = collect(path, folder, n, NULL, out, &numbered);
+        ok = collect(path, folder, n, NULL, out);
         free(folder);
     } else {
         const char *pattern = last_part(path);
-        ok = collect(path, path, (size_t)(pattern - path), pattern, out, &numbered);
+        ok = collect(path, path, (size_t)(pattern - path), pattern, out);
     }
     if (!ok) return false;
     if (out->n == 0) {
         cli_error("%s: there are no pictures", path);
         return false;
     }
-    if (!numbered) {
-        qsort(out->frames, out->n, sizeof *out->frames, by_path);
-        for (size_t i = 0; i < out->n; ++i) out->frames[i].number = (long)i;
-    }
-    qsort(out->frames, out->n, sizeof *out->frames, by_number);
-    for (size_t i = 1; i < out->n; ++i) {
-        if (out->frames[i].number != out->frames[i - 1].number) continue;
-        cli_error("%s: both '%s' and '%s' are frame %ld", path, last_part(out->frames[i - 1].path),
-                  last_part(out->frames[i].path), out->frames[i].number);
-        return false;
-    }
-    return true;
+    return sort(path, out);
 }
 
 void sequence_free(Sequence *sequence)
 {
-    for (size_t i = 0; i < sequence->n; ++i) free(sequence->frames[i].path);
+    for (size_t i = 0; i < sequence->n; ++i) {
+        free(sequence->frames[i].path);
+        free(sequence->frames[i].name);
+    }
     free(sequence->frames);
     *sequence = (Sequence){0};
 }

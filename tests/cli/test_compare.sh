@@ -56,6 +56,30 @@ rm own/*2.hdr; cp "$P/zip_step.exr" own/2.exr
 expect 1 compare ref own; says '^sheen: own/2.exr: 40 x 32 pixels'
 expect 1 compare ref 'own/####.exr'; says '^sheen: own/####.exr: there are no pictures'
 
+# Folders of pictures that have names: matched by those without the ending, each with its figures, no flicker. Two sizes.
+mkdir gallery shown
+cp "$P/plain.hdr" gallery/box.hdr; cp "$P/zip_step.exr" gallery/room2.exr
+cp "$P/repeat.hdr" shown/box.hdr; cp "$P/zip_step.exr" shown/room2.exr
+expect 0 compare gallery shown; silent
+[ "$(grep '"picture"' out | tr -d '" ,\n')" = "picture:boxpicture:room2" ] || fail "not the pictures by name"
+grep -q flicker out && fail "flicker of pictures that do not follow each other"
+is mse 0.0455728 0.0455730 # half of that of repeat.hdr
+expect 0 compare --html named.html gallery shown gallery
+[ "$(grep -o 'data-picture="[a-z0-9]*" data-image="[a-z]*"' named.html | tr -d '\n')" = "\
+data-picture=\"box\" data-image=\"shown\"data-picture=\"room2\" data-image=\"shown\"\
+data-picture=\"box\" data-image=\"gallery\"data-picture=\"room2\" data-image=\"gallery\"" ] ||
+    fail "the page does not hold each picture of each folder"
+# Each reference once, where data-reference points to.
+[ "$(grep -c '"reference-hdr">Iz9S' named.html)" -eq 2 ] || fail "not each reference once"
+[ "$(grep -o 'data-reference="[0-9]*"' named.html | tr -dc '0-9')" = 0101 ] || fail "references are not shared"
+grep -q '<th>room2, shown</th>' named.html || fail "the table does not name the pictures"
+mv shown/box.hdr shown/bax.hdr
+expect 1 compare gallery shown; says "^sheen: gallery: the picture 'bax' is not there, but it is in 'shown'"
+cp "$P/plain.hdr" shown/box.hdr; cp "$P/rgb8.png" shown/box.png
+expect 1 compare gallery shown; says "^sheen: shown: both 'box.hdr' and 'box.png' are the picture 'box'"
+expect 1 compare ref shown; says "^sheen: shown: both 'box.hdr' and 'box.png'"
+expect 1 compare ref gallery; says "^sheen: ref: the picture 'box' is not there, but it is in 'gallery'"
+
 # The page: one file with everything in it, nothing from elsewhere, names harmless.
 cp "$P/repeat.hdr" '<b>&.hdr'
 expect 0 compare --html page.html "$P/plain.hdr" '<b>&.hdr' "$P/rle_half.exr"; silent
