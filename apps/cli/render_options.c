@@ -27,6 +27,12 @@ static const Choice secondaries[] = {
     {"path", SHEEN_SECONDARY_PATH},
     {0},
 };
+static const Choice filters[] = {
+    {"scene", SHEEN_FILTER_UNSET},       {"box", SHEEN_FILTER_BOX},
+    {"tent", SHEEN_FILTER_TENT},         {"gaussian", SHEEN_FILTER_GAUSSIAN},
+    {"mitchell", SHEEN_FILTER_MITCHELL}, {"catmullrom", SHEEN_FILTER_CATMULL_ROM},
+    {"lanczos", SHEEN_FILTER_LANCZOS},   {0},
+};
 static const Choice on_off[] = {{"on", true}, {"off", false}, {0}};
 static const Choice progress_modes[] = {
     {"auto", PROGRESS_AUTO},
@@ -111,6 +117,16 @@ const Option render_options[] = {
      .recorded = true,
      RANGE(1, 1 << 24),
      FIELD(spp)},
+    {.kind = OPTION_CHOICE,
+     .name = "filter",
+     .argument = "scene|box|tent|gaussian|mitchell|catmullrom|lanczos",
+     .meaning = "How a pixel averages its samples: by the filter that the scene names, or by this one with its usual "
+                "parameters. Samples are drawn where the filter is high; no pixel takes another's.",
+     .standard = "scene; where it names none, gaussian in Mitsuba's format and box in OBJ",
+     .example = "--filter box",
+     .choices = filters,
+     .recorded = true,
+     FIELD(filter)},
     {.kind = OPTION_COUNT,
      .name = "light-samples",
      .argument = "N",
@@ -349,6 +365,9 @@ SheenRenderSettings render_values_settings(RenderValues *values, const SheenCame
     if (values->size.width == 0) values->size = (PictureSize){camera->width, camera->height};
     if (values->spp == 0)
         values->spp = values->integrator == SHEEN_INTEGRATOR_PATH && camera->spp ? camera->spp : o.spp;
+    SheenFilter filter =
+        values->filter == SHEEN_FILTER_UNSET ? camera->filter : sheen_filter_standard((SheenFilterKind)values->filter);
+    values->filter = filter.kind == SHEEN_FILTER_UNSET ? SHEEN_FILTER_BOX : (int)filter.kind;
     o.spp = values->spp;
     o.light_samples = values->light_samples;
     o.bounces = values->bounces;
@@ -366,6 +385,7 @@ SheenRenderSettings render_values_settings(RenderValues *values, const SheenCame
         .width = values->size.width,
         .height = values->size.height,
         .aovs = values->aovs,
+        .filter = filter,
         .options = o,
     };
 }

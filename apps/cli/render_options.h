@@ -15,6 +15,7 @@ typedef struct RenderValues {
     TextList outputs, defines;
     int integrator; // SheenIntegrator
     PictureSize size;
+    int filter;         // SheenFilterKind; SHEEN_FILTER_UNSET for the camera's
     const char *camera; // name or index, NULL for the first
     uint32_t spp, light_samples, bounces;
     double time_limit;
@@ -44,7 +45,7 @@ bool defines_check(const Command *command, const TextList *defines);
  */
 bool render_values_check(const RenderValues *values);
 
-/** The library's settings, for a scene's camera; fills camera, and size and spp where they are 0, of
+/** The library's settings, for a scene's camera; fills camera and filter, and size and spp where they are 0, of
  * *values. */
 SheenRenderSettings render_values_settings(RenderValues *values, const SheenCamera *camera, uint32_t camera_index);
 

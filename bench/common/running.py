@@ -69,7 +69,12 @@ def measure(command, cwd=None):
 
 
 def render(scene, picture, **options):
-    """sheen render; spp=4 becomes --spp 4. One or several pictures."""
+    """sheen render; spp=4 becomes --spp 4. One or several pictures.
+
+    Pixels are boxes unless another filter is asked for: pictures are compared with those of other programs and of
+    other sizes.
+    """
+    options.setdefault("filter", "box")
     if not os.access(SHEEN, os.X_OK):
         fail(f"{SHEEN} is not there; build the release preset first")
     pictures = [picture] if isinstance(picture, str) else picture

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture in the making: sums of samples over each pixel (box filter) and named layers.
+// The picture in the making: weighted sums of each pixel's own samples, and named layers.
 #ifndef SHEEN_FILM_FILM_H
 #define SHEEN_FILM_FILM_H
 

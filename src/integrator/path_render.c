@@ -11,12 +11,15 @@ enum { TILE = 16, MAX_PASS = 16 };
 // Progress is reported at most this often, seconds.
 static const double REPORT_INTERVAL = 0.02;
 
-// Sums of all samples, in double, so that neither the number of samples nor how they are cut into passes shows.
+// Sums of all samples, in double, so that neither the number of samples nor how they are cut into passes shows. Those
+// that count negatively are kept apart: what they weigh is known when all are counted.
 typedef struct Sums {
-    double *data;                // [height][width][stride]: colour, then each layer wanted
+    double *data; // [height][width][stride]: colour, then each layer wanted; the same of negative samples
+                  // and their number where the filter has any
     int offset[SHEEN_AOV_COUNT]; // first channel of a layer, 0 when nobody asked for it
-    size_t stride;
-    bool first_hit; // some layer shows the first hit
+    size_t part, stride;         // channels of colour and layers, and of a pixel
+    bool has_signs;              // some samples count negatively
+    bool first_hit;              // some layer shows the first hit
 } Sums;
 
 // What one thread needs: counters, and one sample of each pixel of a tile.
@@ -25,6 +28,7 @@ typedef struct Worker {
     SheenSampler samplers[TILE * TILE];
     Ray rays[TILE * TILE];
     Hit hits[TILE * TILE];
+    bool negative[TILE * TILE]; // samples that count negatively
 } Worker;
 
 typedef struct Passes {
@@ -40,18 +44,19 @@ typedef struct Passes {
     double start, last_report; // the latter is used by the calling thread alone
 } Passes;
 
-static SheenStatus sums_create(const SheenFilm *film, Sums *sums)
+static SheenStatus sums_create(const SheenFilm *film, const SheenPixelFilter *filter, Sums *sums)
 {
     static const SheenAov of_first_hit[] = {SHEEN_AOV_DEPTH, SHEEN_AOV_POSITION, SHEEN_AOV_NORMAL,  SHEEN_AOV_ALBEDO,
                                             SHEEN_AOV_UV,    SHEEN_AOV_DIRECT,   SHEEN_AOV_INDIRECT};
-    *sums = (Sums){.stride = 3};
+    *sums = (Sums){.part = 3, .has_signs = filter && filter->has_signs};
     for (size_t i = 0; i < sizeof of_first_hit / sizeof of_first_hit[0]; ++i) {
         SheenAov aov = of_first_hit[i];
         if (!film->aov[aov]) continue;
-        sums->offset[aov] = (int)sums->stride;
-        sums->stride += sheen_aov_info[aov].n_channels;
+        sums->offset[aov] = (int)sums->part;
+        sums->part += sheen_aov_info[aov].n_channels;
         sums->first_hit = sums->first_hit || (aov != SHEEN_AOV_DIRECT && aov != SHEEN_AOV_INDIRECT);
     }
+    sums->stride = sums->has_signs ? 2 * sums->part + 1 : sums->part;
     sums->data = calloc((size_t)film->width * film->height, sums->stride * sizeof *sums->data);
     return sums->data ? SHEEN_OK : SHEEN_ERR_NOMEM;
 }
@@ -102,16 +107,23 @@ static void set_primitive(SheenFilm *film, size_t pixel, const Hit *hit)
     px[3 * pixel + 2] = miss ? -1.0f : index_or_minus_one(hit->instance);
 }
 
-static void add_sample(Passes *p, size_t pixel, SheenSampler sampler, const Ray *ray, const Hit *hit, SheenStats *stats)
+static void add_sample(Passes *p, size_t pixel, uint32_t i, Worker *w)
 {
     const Sums *sums = &p->sums;
+    SheenSampler sampler = w->samplers[i];
+    const Ray *ray = &w->rays[i];
+    const Hit *hit = &w->hits[i];
     double *px = sums->data + pixel * sums->stride;
+    if (w->negative[i]) {
+        px[sums->stride - 1] += 1.0;
+        px += sums->part;
+    }
     if (sampler.index == 0) set_primitive(p->film, pixel, hit);
     if (sums->first_hit) add_first_hit(p, px, ray, hit);
-    PathRadiance L = sheen_path_trace(p->work, ray, hit, sampler, stats);
+    PathRadiance L = sheen_path_trace(p->work, ray, hit, sampler, &w->stats);
     Rgb color = rgb_add(L.direct, L.indirect);
     if (!rgb_finite(color)) {
-        ++stats->nonfinite_samples;
+        ++w->stats.nonfinite_samples;
         return;
     }
     add_rgb(px, color);
@@ -134,16 +146,13 @@ static void render_tile_sample(Passes *p, uint32_t x0, uint32_t y0, uint32_t ind
     for (uint32_t i = 0; i < n; ++i) {
         uint32_t x = x0 + i % width, y = y0 + i / width;
         w->samplers[i] = sampler_make(hash_combine(hash_combine(hash_u32(work->options.seed), x), y), index);
-        Vec2 u = sampler_2d(&w->samplers[i]);
-        float px = (float)x + u.x, py = (float)y + u.y;
-        w->rays[i] = sheen_eye_has_lens(&p->eye) ? sheen_eye_lens_ray(&p->eye, px, py, sampler_2d(&w->samplers[i]))
-                                                 : sheen_eye_ray(&p->eye, px, py);
+        w->rays[i] = sheen_camera_ray(work, &p->eye, x, y, &w->samplers[i], &w->negative[i]);
     }
     sheen_accel_intersect_many(work->accel, SHEEN_COHERENT, n, w->rays, w->hits);
     w->stats.rays_camera += n;
     for (uint32_t i = 0; i < n && !cancelled(work); ++i) {
         size_t pixel = (size_t)(y0 + i / width) * work->width + x0 + i % width;
-        add_sample(p, pixel, w->samplers[i], &w->rays[i], &w->hits[i], &w->stats);
+        add_sample(p, pixel, i, w);
     }
 }
 
@@ -181,22 +190,36 @@ static uint32_t next_pass(const Passes *p)
     return size < fit ? size : (uint32_t)fit;
 }
 
+// Means of a pixel's sums: `out` may be the sums themselves.
+static void pixel_means(const Passes *p, const double *px, double *out)
+{
+    const Sums *sums = &p->sums;
+    double weight[2];
+    uint32_t n_negative = sums->has_signs ? (uint32_t)px[sums->stride - 1] : 0;
+    sheen_pixel_filter_weights(p->work->filter, p->first, n_negative, weight);
+    for (size_t c = 0; c < sums->part; ++c) {
+        double sum = weight[0] * px[c];
+        if (sums->has_signs) sum += weight[1] * px[sums->part + c];
+        out[c] = sum / p->first;
+    }
+}
+
 static void write_film(const Passes *p)
 {
     const Sums *sums = &p->sums;
     SheenFilm *film = p->film;
-    double scale = 1.0 / p->first;
     size_t n = (size_t)film->width * film->height;
     for (size_t i = 0; i < n; ++i) {
-        const double *px = sums->data + i * sums->stride;
-        film->color[i] = rgb((float)(px[0] * scale), (float)(px[1] * scale), (float)(px[2] * scale));
+        double *px = sums->data + i * sums->stride;
+        pixel_means(p, px, px);
+        film->color[i] = rgb((float)px[0], (float)px[1], (float)px[2]);
     }
     for (int a = 0; a < SHEEN_AOV_COUNT; ++a) {
         if (!sums->offset[a]) continue;
         unsigned n_channels = sheen_aov_info[a].n_channels;
         for (size_t i = 0; i < n; ++i) {
             const double *px = sums->data + i * sums->stride + sums->offset[a];
-            for (unsigned c = 0; c < n_channels; ++c) film->aov[a][i * n_channels + c] = (float)(px[c] * scale);
+            for (unsigned c = 0; c < n_channels; ++c) film->aov[a][i * n_channels + c] = (float)px[c];
         }
     }
 }
@@ -226,7 +249,7 @@ SheenStatus sheen_path_render(const SheenWork *work, SheenFilm *film, SheenStats
                 .start = sheen_clock_seconds()};
     unsigned n_workers = sheen_pool_size(work->pool);
     p.workers = calloc(n_workers, sizeof *p.workers);
-    SheenStatus status = sums_create(film, &p.sums);
+    SheenStatus status = sums_create(film, work->filter, &p.sums);
     if (!p.workers) status = SHEEN_ERR_NOMEM;
     if (status == SHEEN_OK) {
         progress_report(work->progress, "path", 0.0, 0);

@@ -69,22 +69,43 @@ static bool reserve_batch(Visibility *v, size_t n)
     return v->batch_capacity > 0;
 }
 
+static SheenSampler pixel_sampler(const SheenWork *work, uint32_t x, uint32_t y, uint32_t s)
+{
+    return sampler_make(hash_u32(work->options.seed), sheen_sample_index(x, y, work->options.spp, s));
+}
+
+// What the pixel's samples count for in their mean, the negative ones in weight[1].
+static void pixel_weights(const SheenWork *work, uint32_t x, uint32_t y, float weight[2])
+{
+    uint32_t n_negative = 0;
+    for (uint32_t s = 0; work->filter && work->filter->has_signs && s < work->options.spp; ++s) {
+        SheenSampler sampler = pixel_sampler(work, x, y, s);
+        bool negative;
+        sheen_pixel_filter_sample(work->filter, sampler_2d(&sampler), &negative);
+        n_negative += negative;
+    }
+    double exact[2];
+    sheen_pixel_filter_weights(work->filter, work->options.spp, n_negative, exact);
+    weight[0] = (float)exact[0], weight[1] = (float)exact[1];
+}
+
 static bool push_camera_rays(const SheenWork *work, const SheenEye *eye, const Tile *tile, uint32_t first, uint32_t n,
                              Visibility *v)
 {
     v->n_rays[0] = 0;
     for (uint32_t y = tile->y; y < tile->y + tile->height; ++y)
-        for (uint32_t x = tile->x; x < tile->x + tile->width; ++x)
+        for (uint32_t x = tile->x; x < tile->x + tile->width; ++x) {
+            float weight[2];
+            pixel_weights(work, x, y, weight);
             for (uint32_t s = first; s < first + n; ++s) {
-                uint32_t pixel = y * work->width + x;
-                SheenSampler sampler =
-                    sampler_make(hash_u32(work->options.seed), sheen_sample_index(x, y, work->options.spp, s));
-                Vec2 u = sampler_2d(&sampler);
-                float px = (float)x + u.x, py = (float)y + u.y;
-                EyeRay r = {sheen_eye_ray(eye, px, py), rgb_gray(1.0f), .pixel = pixel, .sample = s, .branch = 1};
-                if (sheen_eye_has_lens(eye)) r.ray = sheen_eye_lens_ray(eye, px, py, sampler_2d(&sampler));
+                EyeRay r = {.throughput = rgb_gray(1.0f), .pixel = y * work->width + x, .sample = s, .branch = 1};
+                SheenSampler sampler = pixel_sampler(work, x, y, s);
+                bool negative;
+                r.ray = sheen_camera_ray(work, eye, x, y, &sampler, &negative);
+                r.weight = weight[negative];
                 if (!push_ray(v, 0, &r)) return false;
             }
+        }
     return true;
 }
 
@@ -168,7 +189,8 @@ static bool send_glossy(const SheenWork *work, const EyeRay *r, const SeenSurfac
 
 static bool add_point(const EyeRay *r, const DiffusePoint *point, bool lit, Visibility *v)
 {
-    ShadingPoint p = {*point, r->throughput, r->footprint, r->pixel, r->sample, r->branch, lit, r->gathered};
+    ShadingPoint p = {
+        *point, rgb_scale(r->throughput, r->weight), r->footprint, r->pixel, r->sample, r->branch, lit, r->gathered};
     return push_point(v, &p);
 }
 
@@ -250,8 +272,10 @@ bool sheen_visibility_trace(const SheenWork *work, const Tile *tile, uint32_t fi
         sheen_accel_intersect_many(work->accel, depth ? SHEEN_INCOHERENT : SHEEN_COHERENT, n_rays, v->batch, v->hits);
         if (depth) stats->rays_specular += n_rays;
         v->n_rays[list ^ 1] = 0;
-        for (size_t i = 0; i < n_rays; ++i)
-            if (!arrive(work, &eye, &v->rays[list][i], &v->hits[i], list ^ 1, weight, film, v, stats)) return false;
+        for (size_t i = 0; i < n_rays; ++i) {
+            EyeRay *r = &v->rays[list][i];
+            if (!arrive(work, &eye, r, &v->hits[i], list ^ 1, weight * r->weight, film, v, stats)) return false;
+        }
     }
     return true;
 }

@@ -8,7 +8,8 @@
 /** A point that a pixel sees. */
 typedef struct ShadingPoint {
     DiffusePoint point;
-    Rgb throughput;  // of the mirrors and panes on the way, over the chance of the way
+    Rgb throughput;  // of the mirrors and panes on the way, over the chance of the way; times what the sample counts
+                     // for under the pixel's filter, which may be negative
     float footprint; // side of a pixel's square at this distance, metres
     uint32_t pixel;  // y * width + x
     uint32_t sample; // sample of the pixel
@@ -30,6 +31,7 @@ Tile sheen_tile(const SheenWork *work, uint32_t index);
 typedef struct EyeRay {
     Ray ray;
     Rgb throughput;
+    float weight;        // of the sample in the mean of its pixel's samples, by the filter; may be negative
     float length;        // of the way so far
     float blur, blurred; // by glossy reflections: what a pixel grows by a metre, and has grown
     float footprint;     // side of a pixel's square where the ray arrived, metres

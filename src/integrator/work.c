@@ -40,6 +40,14 @@ uint32_t sheen_sample_index(uint32_t x, uint32_t y, uint32_t per_pixel, uint32_t
     return (spread(x) | spread(y) << 1) * per_pixel + s;
 }
 
+Ray sheen_camera_ray(const SheenWork *work, const SheenEye *eye, uint32_t x, uint32_t y, SheenSampler *sampler,
+                     bool *negative)
+{
+    Vec2 place = sheen_pixel_filter_sample(work->filter, sampler_2d(sampler), negative);
+    float px = (float)x + place.x, py = (float)y + place.y;
+    return sheen_eye_has_lens(eye) ? sheen_eye_lens_ray(eye, px, py, sampler_2d(sampler)) : sheen_eye_ray(eye, px, py);
+}
+
 SheenEye sheen_eye(const SheenCamera *camera, uint32_t width, uint32_t height)
 {
     // The camera looks along +z; +x is to the left in the picture and +y up.

@@ -7,7 +7,9 @@
 #include "base/pool.h"
 #include "base/progress.h"
 #include "film/film.h"
+#include "film/pixel_filter.h"
 #include "light/light.h"
+#include "math/sampler.h"
 #include "math/warp.h"
 #include "ray/accel.h"
 #include "scene/scene.h"
@@ -52,7 +54,8 @@ typedef struct SheenWork {
     const SheenAccel *accel;
     const SheenLights *lights;
     const SheenCamera *camera;
-    uint32_t width, height; // of the picture, may differ from the camera's own
+    uint32_t width, height;         // of the picture, may differ from the camera's own
+    const SheenPixelFilter *filter; // NULL: a box
     SheenOptions options;
     SheenPool *pool;
     const atomic_bool *cancel; // may be NULL
@@ -105,6 +108,14 @@ static inline Ray sheen_eye_lens_ray(const SheenEye *eye, float x, float y, Vec2
     return (Ray){v3_add(eye->origin, offset), INFINITY, v3_normalize(v3_sub(target, offset))};
 }
 
+/**
+ * The ray of a pixel's sample: its place by the picture's filter, then a point of the lens if there is one.
+ * @param sampler   its first dimensions are drawn
+ * @param negative  gets whether the sample counts negatively, see sheen_pixel_filter_weights
+ */
+Ray sheen_camera_ray(const SheenWork *work, const SheenEye *eye, uint32_t x, uint32_t y, SheenSampler *sampler,
+                     bool *negative);
+
 /** @return side of a pixel on a surface after a way of that length, metres. */
 static inline float sheen_eye_footprint(const SheenEye *eye, float length)
 {
@@ -121,8 +132,8 @@ static inline float sheen_eye_footprint(const SheenEye *eye, float length)
  * - Every other scattering is one. Light reaches the eye after at most B + 1 of them: B = 0 is direct light only.
  * - A direction on different sides of a surface's geometric and of its shading normal carries nothing.
  *
- * sheen_path_render is the reference: path tracing with light samples and BSDF samples weighed by the power heuristic,
- * box filter; options.light_samples where a path first scatters, one at later vertices. With options.time_limit it
+ * sheen_path_render is the reference: path tracing with light samples and BSDF samples weighed by the power heuristic;
+ * options.light_samples where a path first scatters, one at later vertices. With options.time_limit it
  * makes passes until the next would end too late, whatever options.spp says, at least one. The picture is a function of
  * scene, size, seed and stats->spp_done alone: not of threads and passes. Non-finite samples are counted and add
  * nothing. Layers of the cache stay zero.

@@ -72,9 +72,56 @@ static void read_crop(Mitsuba *m, const SheenXml *film, SheenCamera *c)
         v2((float)((double)(film_w - x - w) / (double)film_w), (float)((double)(film_h - y - h) / (double)film_h));
 }
 
+/** A parameter of a filter; 0 after an error. */
+static float read_filter_number(Mitsuba *m, const SheenXml *e, const char *name, float otherwise, double lo, double hi)
+{
+    double x = sheen_mi_float(m, e, name, (double)otherwise);
+    if (m->status) return 0.0f;
+    if (x >= lo && x <= hi) return (float)x;
+    sheen_mi_fail(m, SHEEN_ERR_PARSE, sheen_mi_child(e, name),
+                  "'%s' of a reconstruction filter must be %g to %g, not %g", name, lo, hi, x);
+    return 0.0f;
+}
+
+/** The film's reconstruction filter; Mitsuba's is gaussian where none is named. */
+static SheenFilter read_filter(Mitsuba *m, const SheenXml *film)
+{
+    static const struct {
+        const char *name;
+        SheenFilterKind kind;
+    } plugins[] = {
+        {"box", SHEEN_FILTER_BOX},           {"tent", SHEEN_FILTER_TENT},
+        {"gaussian", SHEEN_FILTER_GAUSSIAN}, {"mitchell", SHEEN_FILTER_MITCHELL},
+        {"lanczos", SHEEN_FILTER_LANCZOS},   {"catmullrom", SHEEN_FILTER_CATMULL_ROM},
+    };
+    // Wider ones would take a pixel's samples from all over the picture.
+    const double radius_max = 16.0, radius_min = 1e-3;
+    const SheenXml *e = sheen_mi_nested(m, film, "rfilter");
+    const char *type = e ? sheen_mi_type(e) : "gaussian";
+    SheenFilter f = sheen_filter_standard(SHEEN_FILTER_UNSET);
+    for (size_t i = 0; i < sizeof plugins / sizeof *plugins; ++i)
+        if (sheen_mi_same(type, plugins[i].name)) f = sheen_filter_standard(plugins[i].kind);
+    if (f.kind == SHEEN_FILTER_UNSET) {
+        sheen_xml_warn(m->log, e, "the reconstruction filter '%s' is not supported: 'gaussian' stands in", type);
+        return sheen_filter_standard(SHEEN_FILTER_GAUSSIAN);
+    }
+    if (!e) return f;
+    if (f.kind == SHEEN_FILTER_TENT) f.radius = read_filter_number(m, e, "radius", f.radius, radius_min, radius_max);
+    if (f.kind == SHEEN_FILTER_GAUSSIAN)
+        f = sheen_filter_gaussian(read_filter_number(m, e, "stddev", f.stddev, 0.25 * radius_min, 0.25 * radius_max));
+    if (f.kind == SHEEN_FILTER_MITCHELL) {
+        f.b = read_filter_number(m, e, "B", f.b, -2.0, 2.0);
+        f.c = read_filter_number(m, e, "C", f.c, -2.0, 2.0);
+    }
+    if (f.kind == SHEEN_FILTER_LANCZOS) f.radius = read_filter_number(m, e, "lobes", f.radius, 1.0, radius_max);
+    if (!m->status) sheen_mi_report_unused(m, e);
+    return f;
+}
+
 static void read_film(Mitsuba *m, const SheenXml *e, SheenCamera *c)
 {
     c->width = 768, c->height = 576; // Mitsuba's default
+    c->filter = sheen_filter_standard(SHEEN_FILTER_GAUSSIAN);
     const SheenXml *film = sheen_mi_nested(m, e, "film");
     if (!film || m->status) return;
     c->width = read_side(m, film, "width", c->width);
@@ -82,11 +129,7 @@ static void read_film(Mitsuba *m, const SheenXml *e, SheenCamera *c)
     if (!m->status && (uint64_t)c->width * c->height > SHEEN_IMAGE_MAX_PIXELS)
         sheen_mi_fail(m, SHEEN_ERR_PARSE, film, "a picture of %u x %u pixels is too large", c->width, c->height);
     if (!m->status) read_crop(m, film, c);
-    const SheenXml *filter = sheen_mi_nested(m, film, "rfilter");
-    const char *type = filter ? sheen_mi_type(filter) : "box";
-    // Each sample counts for its own pixel alone. The common filters differ little from that; others are named.
-    if (!sheen_mi_same(type, "box") && !sheen_mi_same(type, "tent") && !sheen_mi_same(type, "gaussian"))
-        sheen_xml_warn(m->log, filter, "the reconstruction filter '%s' is not supported: 'box' stands in", type);
+    if (!m->status) c->filter = read_filter(m, film);
 }
 
 /** The principal point: the film is shifted, fractions of its width and height, right and down. */

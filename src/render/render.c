@@ -37,6 +37,8 @@ SheenStatus sheen_render(const SheenScene *scene, const SheenRenderSettings *set
     SheenEnvironmentSplit split =
         settings->integrator == SHEEN_INTEGRATOR_IRRADIANCE ? SHEEN_ENVIRONMENT_HARD : SHEEN_ENVIRONMENT_WHOLE;
     const Integrator *integrator = &integrators[settings->integrator];
+    SheenPixelFilter filter;
+    sheen_pixel_filter_init(settings->filter.kind ? &settings->filter : &camera->filter, &filter);
     SheenLights *lights = NULL;
     SheenAccel *accel = NULL;
     progress_report(progress, "build", 0.0, 0);
@@ -51,6 +53,7 @@ SheenStatus sheen_render(const SheenScene *scene, const SheenRenderSettings *set
                           .camera = camera,
                           .width = width,
                           .height = height,
+                          .filter = &filter,
                           .options = settings->options,
                           .pool = pool,
                           .cancel = cancel,

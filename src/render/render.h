@@ -13,6 +13,7 @@ typedef struct SheenRenderSettings {
     uint32_t camera;        // index into scene->cameras
     uint32_t width, height; // 0: the camera's
     unsigned aovs;          // bit 1 << SheenAov
+    SheenFilter filter;     // SHEEN_FILTER_UNSET: the camera's
     SheenOptions options;
 } SheenRenderSettings;
 

@@ -8,6 +8,7 @@
 #include "math/microfacet.h"
 #include "math/transform.h"
 #include "math/vec.h"
+#include "scene/filter.h"
 #include "scene/texture.h"
 
 #include <stdint.h>
@@ -165,6 +166,7 @@ typedef struct SheenCamera {
                             // of its width and height; a film that is shifted has one of a pair below zero
     uint32_t width, height; // pixels of the picture, from the scene's film
     uint32_t spp;           // samples per pixel that the scene asks for, 0 when it says nothing
+    SheenFilter filter;     // by which samples make pixels
 } SheenCamera;
 
 // ---- the whole --------------------------------------------------------------------------------------------------

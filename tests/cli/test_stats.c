@@ -118,6 +118,7 @@ static void test_path(void **state)
     const json_t *options = json_object_get(stats, "options");
     assert_int_equal(integer(options, "bounces"), 2);
     assert_int_equal(integer(options, "spp"), 3);
+    assert_string_equal(text(options, "filter"), "box"); // the scene's
     assert_string_equal(text(options, "integrator"), "path");
     json_decref(stats);
 }

@@ -895,7 +895,7 @@ static void other_cameras(void **state)
                      "value=\"y\"/><film type=\"hdrfilm\"><integer name=\"width\" value=\"200\"/><integer "
                      "name=\"height\" value=\"100\"/><integer name=\"crop_offset_x\" value=\"50\"/><integer "
                      "name=\"cropOffsetY\" value=\"25\"/><integer name=\"crop_width\" value=\"20\"/><integer "
-                     "name=\"crop_height\" value=\"50\"/><rfilter type=\"mitchell\"/></film></sensor>");
+                     "name=\"crop_height\" value=\"50\"/></film></sensor>");
     const SheenCamera *c = &s->cameras[0];
     assert_int_equal(c->width, 20);
     assert_int_equal(c->height, 50);
@@ -904,8 +904,56 @@ static void other_cameras(void **state)
     assert_float_equal(c->cut_hi.x, 0.65f, 1e-7f);
     assert_float_equal(c->cut_lo.y, 0.25f, 0.0f);
     assert_float_equal(c->cut_hi.y, 0.25f, 0.0f);
-    assert_int_equal(k->n_warnings, 2); // no light, and:
-    assert_non_null(strstr(k->warnings, "the reconstruction filter 'mitchell' is not supported: 'box' stands in"));
+    assert_int_equal(k->n_warnings, 1); // no light
+}
+
+static const SheenFilter *filter_of(Kit *k, const char *rfilter)
+{
+    char body[512];
+    snprintf(body, sizeof body, "<sensor type=\"perspective\"><float name=\"fov\" value=\"40\"/>%s</sensor>", rfilter);
+    return &kit_scene(k, body)->cameras[0].filter;
+}
+
+static void reconstruction_filters(void **state)
+{
+    Kit *k = *state;
+    static const struct {
+        const char *text;
+        SheenFilter want;
+    } cases[] = {
+        {"", {SHEEN_FILTER_GAUSSIAN, 2.0f, 0.5f, 0, 0}},
+        {"<film type=\"hdrfilm\"/>", {SHEEN_FILTER_GAUSSIAN, 2.0f, 0.5f, 0, 0}},
+        {"<film type=\"hdrfilm\"><rfilter type=\"box\"/></film>", {SHEEN_FILTER_BOX, 0.5f, 0, 0, 0}},
+        {"<film type=\"hdrfilm\"><rfilter type=\"tent\"/></film>", {SHEEN_FILTER_TENT, 1.0f, 0, 0, 0}},
+        {"<film type=\"hdrfilm\"><rfilter type=\"tent\"><float name=\"radius\" value=\"1.5\"/></rfilter></film>",
+         {SHEEN_FILTER_TENT, 1.5f, 0, 0, 0}},
+        {"<film type=\"ldrfilm\"><rfilter type=\"gaussian\"><float name=\"stddev\" value=\"0.25\"/></rfilter></film>",
+         {SHEEN_FILTER_GAUSSIAN, 1.0f, 0.25f, 0, 0}},
+        {"<film type=\"hdrfilm\"><rfilter type=\"mitchell\"/></film>",
+         {SHEEN_FILTER_MITCHELL, 2.0f, 0, 1.0f / 3.0f, 1.0f / 3.0f}},
+        {"<film type=\"hdrfilm\"><rfilter type=\"mitchell\"><float name=\"B\" value=\"0.25\"/><float name=\"C\" "
+         "value=\"0.5\"/></rfilter></film>",
+         {SHEEN_FILTER_MITCHELL, 2.0f, 0, 0.25f, 0.5f}},
+        {"<film type=\"hdrfilm\"><rfilter type=\"catmullrom\"/></film>", {SHEEN_FILTER_CATMULL_ROM, 2.0f, 0, 0, 0.5f}},
+        {"<film type=\"hdrfilm\"><rfilter type=\"lanczos\"/></film>", {SHEEN_FILTER_LANCZOS, 3.0f, 0, 0, 0}},
+        {"<film type=\"hdrfilm\"><rfilter type=\"lanczos\"><integer name=\"lobes\" value=\"2\"/></rfilter></film>",
+         {SHEEN_FILTER_LANCZOS, 2.0f, 0, 0, 0}},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        const SheenFilter *f = filter_of(k, cases[i].text), *want = &cases[i].want;
+        assert_int_equal(f->kind, want->kind);
+        assert_true(f->radius == want->radius && f->stddev == want->stddev && f->b == want->b && f->c == want->c);
+        assert_int_equal(k->n_warnings, 1); // no light
+    }
+    assert_int_equal(filter_of(k, "<film type=\"hdrfilm\"><rfilter type=\"wsinc\"/></film>")->kind,
+                     SHEEN_FILTER_GAUSSIAN);
+    assert_non_null(strstr(k->warnings, "the reconstruction filter 'wsinc' is not supported: 'gaussian' stands in"));
+    filter_of(k, "<film type=\"hdrfilm\"><rfilter type=\"box\"><float name=\"radius\" value=\"2\"/></rfilter></film>");
+    assert_non_null(strstr(k->warnings, "<float name=\"radius\"> is not supported in <rfilter type=\"box\">"));
+    kit_refused(k,
+                "<sensor type=\"perspective\"><film type=\"hdrfilm\"><rfilter type=\"gaussian\"><float name=\"stddev\" "
+                "value=\"0\"/></rfilter></film></sensor>",
+                SHEEN_ERR_PARSE, "scene.xml:2:74", "'stddev' of a reconstruction filter must be 0.00025 to 4, not 0");
 }
 
 // ---- the language -----------------------------------------------------------------------------------------------
@@ -983,6 +1031,7 @@ int main(void)
         KIT_TEST(skies_and_suns),
         KIT_TEST(cameras),
         KIT_TEST(other_cameras),
+        KIT_TEST(reconstruction_filters),
         KIT_TEST(parameters_and_includes),
         KIT_TEST(what_is_not_known_is_named_and_ignored),
         KIT_TEST(both_spellings_mean_the_same),
