@@ -61,6 +61,18 @@ static void read_shape(Mitsuba *m, SheenXml *e)
     }
 }
 
+static void read_integrator(Mitsuba *m, const SheenXml *e)
+{
+    sheen_xml_info(m->log, e, "the scene's integrator '%s' is ignored: the caller chooses one", sheen_mi_type(e));
+    const SheenXml *inner = e;
+    for (int depth = 0; inner && depth < SHEEN_XML_MAX_DEPTH && !m->status; ++depth) {
+        if (sheen_mi_bool(m, inner, "hide_emitters", false))
+            sheen_xml_warn(m->log, sheen_mi_child(inner, "hide_emitters"),
+                           "'hide_emitters' is not supported: lights stay visible");
+        inner = sheen_mi_nested(m, inner, "integrator");
+    }
+}
+
 static void read_top_level(Mitsuba *m, SheenXml *e)
 {
     // Materials, textures and the like are read when something refers to them.
@@ -74,7 +86,7 @@ static void read_top_level(Mitsuba *m, SheenXml *e)
     else if (strcmp(e->tag, "sensor") == 0)
         sheen_mi_sensor(m, e);
     else if (strcmp(e->tag, "integrator") == 0)
-        sheen_xml_info(m->log, e, "the scene's integrator '%s' is ignored: the caller chooses one", sheen_mi_type(e));
+        read_integrator(m, e);
     else if (!is_one_of(e->tag, definitions, sizeof definitions / sizeof *definitions))
         sheen_xml_warn(m->log, e, "<%s> is not supported and is ignored", e->tag);
 }

@@ -33,9 +33,9 @@ typedef struct Mitsuba {
     int version;                   // major
     bool with_files;
     MitsubaBitmap *bitmaps;
-    uint32_t lamp_material; // of lamps without one, counted from 1; 0 when there is none yet
-    bool has_sky;           // one has been baked into an image
-    int material_depth;     // of the materials inside each other that are being read
+    uint32_t lamp_material, clear_material; // counted from 1; 0 when there is none yet
+    bool has_sky;                           // one has been baked into an image
+    int material_depth;                     // of the materials inside each other that are being read
     SheenStatus status;
 } Mitsuba;
 
@@ -129,6 +129,8 @@ void sheen_mi_roughness(Mitsuba *m, SheenXml *e, SheenMaterial *out);
 uint32_t sheen_mi_material(Mitsuba *m, SheenXml *bsdf);
 /** The default of shapes that shine: black. */
 uint32_t sheen_mi_lamp_material(Mitsuba *m);
+/** Of borders that are not seen. */
+uint32_t sheen_mi_clear_material(Mitsuba *m);
 
 /** mitsuba_shape.c: adds a shape of the world, or of the open group; its emitter is left out in a group. */
 void sheen_mi_shape(Mitsuba *m, SheenXml *e, bool in_group);

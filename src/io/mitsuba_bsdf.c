@@ -30,9 +30,13 @@ static void read_diffuse(Mitsuba *m, SheenXml *e, SheenMaterial *out)
     out->reflectance = sheen_mi_texture(m, e, "reflectance", rgb_gray(0.5f));
 }
 
-static void read_base_color(Mitsuba *m, SheenXml *e, SheenMaterial *out)
+static void read_rough_diffuse(Mitsuba *m, SheenXml *e, SheenMaterial *out)
 {
-    out->reflectance = sheen_mi_texture(m, e, "base_color", rgb_gray(0.5f));
+    out->kind = SHEEN_MATERIAL_ROUGH_DIFFUSE;
+    bool named = sheen_mi_child(e, "reflectance") != NULL; // the manual's name; it takes the plastics' too
+    out->reflectance = sheen_mi_texture(m, e, named ? "reflectance" : "diffuse_reflectance", rgb_gray(0.5f));
+    out->alpha_u = sheen_mi_factor(m, e, "alpha", 0.2f, 0.0f, 10.0f);
+    out->fast = sheen_mi_bool(m, e, "use_fast_approx", false);
 }
 
 static void read_gray(Mitsuba *m, SheenXml *e, SheenMaterial *out)
@@ -127,6 +131,24 @@ static void read_null(Mitsuba *m, SheenXml *e, SheenMaterial *out)
     (void)m, (void)e;
     out->kind = SHEEN_MATERIAL_THIN_DIELECTRIC;
     out->ior = 1.0f;
+}
+
+/** What polarization leaves of light that is not polarized: half goes through a polarizer, all through a retarder. */
+static void read_passage(Mitsuba *m, SheenXml *e, SheenMaterial *out, float share)
+{
+    read_null(m, e, out);
+    out->specular_transmittance = sheen_mi_texture(m, e, "transmittance", rgb_gray(1.0f));
+    sheen_texture_scale(&out->specular_transmittance, rgb_gray(share));
+}
+
+static void read_polarizer(Mitsuba *m, SheenXml *e, SheenMaterial *out)
+{
+    read_passage(m, e, out, 0.5f);
+}
+
+static void read_retarder(Mitsuba *m, SheenXml *e, SheenMaterial *out)
+{
+    read_passage(m, e, out, 1.0f);
 }
 
 static void read_difftrans(Mitsuba *m, SheenXml *e, SheenMaterial *out)
@@ -236,28 +258,100 @@ static float principled_ior(Mitsuba *m, SheenXml *e, bool glass)
     return glass && fabsf(eta - 1.0f) < 1e-3f ? 1.001f : eta;
 }
 
-static void read_principled(Mitsuba *m, SheenXml *e, SheenMaterial *out)
+/** A number, an index by name, or the mean of a texture. */
+static float principled_thin_ior(Mitsuba *m, SheenXml *e)
+{
+    SheenXml *c = sheen_mi_child(e, "eta");
+    SheenXml *value = c ? sheen_mi_resolve(m, c) : NULL;
+    if (!value || strcmp(value->tag, "texture") != 0) return (float)read_ior(m, e, "eta", 1.5);
+    SheenTexture t = sheen_mi_texture_of(m, value, rgb_gray(1.5f));
+    return rgb_luminance(sheen_texture_mean(&t));
+}
+
+static void read_base(Mitsuba *m, SheenXml *e, SheenMaterial *out, bool thin)
 {
     SheenPrincipled *p = SHEEN_ARENA_NEW(m->arena, SheenPrincipled, 1);
     if (!p) {
         sheen_mi_fail(m, SHEEN_ERR_NOMEM, e, "out of memory");
         return;
     }
-    out->kind = SHEEN_MATERIAL_PRINCIPLED;
+    out->kind = thin ? SHEEN_MATERIAL_PRINCIPLED_THIN : SHEEN_MATERIAL_PRINCIPLED;
     out->principled = p;
     out->reflectance = sheen_mi_texture(m, e, "base_color", rgb_gray(0.5f));
     out->alpha_u = sheen_mi_factor(m, e, "roughness", 0.5f, 0.0f, 1.0f);
     const struct {
         const char *name;
         SheenTexture *texture;
-    } numbers[] = {
-        {"anisotropic", &p->anisotropic}, {"metallic", &p->metallic},   {"spec_trans", &p->spec_trans},
-        {"spec_tint", &p->spec_tint},     {"sheen", &p->sheen},         {"sheen_tint", &p->sheen_tint},
-        {"flatness", &p->flatness},       {"clearcoat", &p->clearcoat}, {"clearcoat_gloss", &p->clearcoat_gloss}};
-    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; ++i)
-        *numbers[i].texture = sheen_mi_factor(m, e, numbers[i].name, 0.0f, 0.0f, 1.0f);
+    } numbers[] = {{"anisotropic", &p->anisotropic},
+                   {"spec_trans", &p->spec_trans},
+                   {"spec_tint", &p->spec_tint},
+                   {"sheen", &p->sheen},
+                   {"sheen_tint", &p->sheen_tint},
+                   {"flatness", &p->flatness},
+                   {"metallic", &p->metallic},
+                   {"clearcoat", &p->clearcoat},
+                   {"clearcoat_gloss", &p->clearcoat_gloss}};
+    size_t n = sizeof numbers / sizeof *numbers, n_thin = 6;
+    for (size_t i = 0; i < n; ++i)
+        *numbers[i].texture = i < n_thin || !thin ? sheen_mi_factor(m, e, numbers[i].name, 0.0f, 0.0f, 1.0f)
+                                                  : sheen_texture_constant(rgb_gray(0.0f));
+    p->diff_trans = sheen_texture_constant(rgb_gray(0.0f));
+    if (thin) p->diff_trans = sheen_mi_factor(m, e, "diff_trans", 0.0f, 0.0f, 2.0f);
+    sheen_mi_ignore(e, "diffuse_reflectance_sampling_rate");
+}
+
+static void read_principled(Mitsuba *m, SheenXml *e, SheenMaterial *out)
+{
+    read_base(m, e, out, false);
     out->ior = principled_ior(m, e, sheen_mi_child(e, "spec_trans") != NULL);
-    sheen_mi_ignore(e, "diffuse_reflectance_sampling_rate main_specular_sampling_rate clearcoat_sampling_rate");
+    sheen_mi_ignore(e, "main_specular_sampling_rate clearcoat_sampling_rate");
+}
+
+static void read_principled_thin(Mitsuba *m, SheenXml *e, SheenMaterial *out)
+{
+    read_base(m, e, out, true);
+    out->ior = principled_thin_ior(m, e);
+    sheen_mi_ignore(e, "specular_reflectance_sampling_rate specular_transmittance_sampling_rate "
+                       "diffuse_transmittance_sampling_rate");
+}
+
+// ---- what stands in for others ----------------------------------------------------------------------------------
+
+/** Light that is scattered in a layer or below the surface: what part of it is not absorbed at each time. */
+static void read_hk(Mitsuba *m, SheenXml *e, SheenMaterial *out)
+{
+    Rgb one = rgb_gray(1.0f), s = rgb_gray(1.0f), a = rgb_gray(1.0f);
+    if (sheen_mi_child(e, "albedo")) {
+        out->reflectance = sheen_mi_texture(m, e, "albedo", one);
+        return;
+    }
+    if (!sheen_mi_child(e, "sigma_s") || !sheen_mi_child(e, "sigma_a")) return;
+    s = sheen_mi_color(m, e, "sigma_s", MITSUBA_INDEX, s);
+    a = sheen_mi_color(m, e, "sigma_a", MITSUBA_INDEX, a);
+    Rgb c = rgb(s.r / (s.r + a.r), s.g / (s.g + a.g), s.b / (s.b + a.b));
+    out->reflectance = sheen_texture_constant(rgb_unit(c));
+}
+
+static void read_irawan(Mitsuba *m, SheenXml *e, SheenMaterial *out)
+{
+    out->reflectance = sheen_mi_texture(m, e, "weft_kd", rgb_gray(0.5f));
+}
+
+static void read_hair(Mitsuba *m, SheenXml *e, SheenMaterial *out)
+{
+    (void)m, (void)e;
+    out->kind = SHEEN_MATERIAL_ROUGH_PLASTIC;
+    out->ior = 1.55f; // of keratin
+    out->reflectance = sheen_texture_constant(rgb(0.08f, 0.045f, 0.025f));
+    out->alpha_u = out->alpha_v = sheen_texture_constant(rgb_gray(0.3f));
+}
+
+/** Smooth chrome, as the upgrade to version 0.4 made of it. */
+static void read_mirror(Mitsuba *m, SheenXml *e, SheenMaterial *out)
+{
+    out->kind = SHEEN_MATERIAL_CONDUCTOR;
+    (void)sheen_metal_find("Cr", &out->eta, &out->k);
+    out->specular_reflectance = sheen_mi_texture(m, e, "specular_reflectance", rgb_gray(1.0f));
 }
 
 // ---- all materials ----------------------------------------------------------------------------------------------
@@ -285,8 +379,30 @@ static const Plugin plugins[] = {
     {"normalmap", sheen_mi_normalmap, NULL},
     {"coating", sheen_mi_coating, NULL},
     {"roughcoating", sheen_mi_roughcoating, NULL},
-    {"roughdiffuse", read_diffuse, "a smooth diffuse surface"},
-    {"principledthin", read_base_color, "a diffuse surface of its base colour"},
+    {"roughdiffuse", read_rough_diffuse, NULL},
+    {"principledthin", read_principled_thin, NULL},
+    // What only has to do with polarization, or with more than a surface.
+    {"pplastic", read_rough_plastic, "a 'roughplastic'"},
+    {"polarizer", read_polarizer, "a grey filter"},
+    {"circular", read_polarizer, "a grey filter"},
+    {"retarder", read_retarder, "a clear filter"},
+    {"hk", read_hk, "a diffuse surface of its albedo"},
+    {"dipolebrdf", read_hk, "a diffuse surface of its albedo"},
+    {"sssbrdf", read_hk, "a diffuse surface of its albedo"},
+    {"irawan", read_irawan, "a diffuse surface of its yarns' colour"},
+    {"hair", read_hair, "a rough dark plastic"},
+    {"measured", read_gray, "diffuse 0.5"},
+    {"measured_polarized", read_gray, "diffuse 0.5"},
+    // What earlier versions called them, up to 0.3.
+    {"lambertian", read_diffuse, NULL},
+    {"mirror", read_mirror, NULL},
+    {"roughmetal", read_rough_conductor, NULL},
+    {"roughglass", read_rough_dielectric, NULL},
+    {"microfacet", read_rough_plastic, NULL},
+    {"composite", sheen_mi_mixture, NULL},
+    {"mixture", sheen_mi_mixture, NULL},
+    {"disney", read_principled, NULL},
+    {"disneythin", read_principled_thin, NULL},
 };
 
 void sheen_mi_read_material(Mitsuba *m, SheenXml *e, SheenMaterial *out)
@@ -335,15 +451,29 @@ uint32_t sheen_mi_material(Mitsuba *m, SheenXml *bsdf)
     return bsdf->index;
 }
 
+/** Adds a material once. @param kept  its index, counted from 1 */
+static uint32_t add_once(Mitsuba *m, const SheenMaterial *material, uint32_t *kept)
+{
+    if (*kept == 0) {
+        uint32_t index = sheen_builder_add_material(m->builder, material);
+        if (index == SHEEN_NONE) return index;
+        *kept = index + 1;
+    }
+    return *kept - 1;
+}
+
 uint32_t sheen_mi_lamp_material(Mitsuba *m)
 {
-    if (m->lamp_material == 0) {
-        SheenMaterial material = sheen_mi_default_material();
-        material.reflectance = sheen_texture_constant(rgb_gray(0.0f));
-        material.name = "lamp";
-        uint32_t index = sheen_builder_add_material(m->builder, &material);
-        if (index == SHEEN_NONE) return index;
-        m->lamp_material = index + 1;
-    }
-    return m->lamp_material - 1;
+    SheenMaterial material = sheen_mi_default_material();
+    material.reflectance = sheen_texture_constant(rgb_gray(0.0f));
+    material.name = "lamp";
+    return add_once(m, &material, &m->lamp_material);
+}
+
+uint32_t sheen_mi_clear_material(Mitsuba *m)
+{
+    SheenMaterial material = sheen_mi_default_material();
+    read_null(m, m->root, &material);
+    material.name = "clear";
+    return add_once(m, &material, &m->clear_material);
 }

@@ -151,13 +151,36 @@ static void read_lens(Mitsuba *m, const SheenXml *e, SheenCamera *c)
     c->aperture = (float)aperture, c->focus = (float)focus;
 }
 
+/** Sensors that make no picture, or several. @return true when that is all */
+static bool read_other_sensor(Mitsuba *m, SheenXml *e)
+{
+    static const char *const meters[] = {"radiancemeter", "irradiancemeter", "fluencemeter", "distant"};
+    const char *type = sheen_mi_type(e);
+    for (size_t i = 0; i < sizeof meters / sizeof *meters; ++i)
+        if (sheen_mi_same(type, meters[i])) {
+            sheen_xml_warn(m->log, e, "the sensor '%s' takes no picture and is left out", type);
+            return true;
+        }
+    if (!sheen_mi_same(type, "batch")) return false;
+    sheen_xml_warn(m->log, e, "the sensor 'batch' is not supported: the cameras in it stand for themselves");
+    for (SheenXml *c = e->first; c && !m->status; c = c->next) {
+        SheenXml *sensor = sheen_mi_resolve(m, c);
+        if (sensor && strcmp(sensor->tag, "sensor") == 0 && !sheen_mi_same(sheen_mi_type(sensor), "batch"))
+            sheen_mi_sensor(m, sensor);
+    }
+    return true;
+}
+
 void sheen_mi_sensor(Mitsuba *m, SheenXml *e)
 {
+    if (read_other_sensor(m, e)) return;
     const char *type = sheen_mi_type(e), *id = sheen_xml_attribute(e, "id");
     SheenCamera c = {.to_world = sheen_mi_transform(m, e, "to_world")};
-    bool lens = sheen_mi_same(type, "thinlens");
-    c.orthographic = sheen_mi_same(type, "orthographic");
-    if (!lens && !c.orthographic && !sheen_mi_same(type, "perspective"))
+    bool lens = sheen_mi_same(type, "thinlens"), telecentric = sheen_mi_same(type, "telecentric");
+    c.orthographic = telecentric || sheen_mi_same(type, "orthographic");
+    if (telecentric)
+        sheen_xml_warn(m->log, e, "the camera 'telecentric' is not supported: 'orthographic' stands in");
+    else if (!lens && !c.orthographic && !sheen_mi_same(type, "perspective"))
         sheen_xml_warn(m->log, e, "the camera '%s' is not supported: a perspective camera stands in", type);
     read_film(m, e, &c);
     double aspect = (double)c.width / c.height; // of the whole film

@@ -56,13 +56,18 @@ typedef struct Samples {
     uint32_t n, capacity;
 } Samples;
 
+static Rgb fold_spectrum(const SheenSpectrum *s, MitsubaColor kind)
+{
+    return kind == MITSUBA_REFLECTANCE ? sheen_spectrum_reflectance(s) : sheen_spectrum_emission(s);
+}
+
 static Rgb fold(const Samples *s, MitsubaColor kind)
 {
     double *lambda = malloc(2 * (size_t)s->n * sizeof *lambda + 1);
     if (!lambda) return rgb_gray(0.0f);
     SheenSpectrum spectrum = {s->n, lambda, lambda + s->n};
     for (uint32_t i = 0; i < s->n; ++i) lambda[i] = s->pairs[i][0], lambda[s->n + i] = s->pairs[i][1];
-    Rgb c = kind == MITSUBA_REFLECTANCE ? sheen_spectrum_reflectance(&spectrum) : sheen_spectrum_emission(&spectrum);
+    Rgb c = fold_spectrum(&spectrum, kind);
     free(lambda);
     return c;
 }
@@ -160,6 +165,53 @@ static Rgb blackbody_of(Mitsuba *m, const SheenXml *e)
     return rgb_scale(sheen_spectrum_blackbody(t), (float)s);
 }
 
+/** A growing list of finite numbers from a string property. @return false, an error unless there was one, for others */
+static bool numbers_of(Mitsuba *m, const SheenXml *e, const char *name, double **out, uint32_t *n)
+{
+    const char *text = sheen_mi_string(m, e, name, "");
+    size_t most = strlen(text) / 2 + 1; // numbers have something between them
+    *out = SHEEN_ARENA_NEW(m->scratch, double, most);
+    int count = *out && most < INT32_MAX ? sheen_mi_numbers(text, (int)most, *out) : -1;
+    *n = count > 0 ? (uint32_t)count : 0;
+    if (count <= 0) sheen_mi_fail(m, SHEEN_ERR_PARSE, e, "'%s' of the spectrum is not a list of finite numbers", name);
+    return count > 0;
+}
+
+/** `regular` has its values at even steps of the wavelength, `irregular` names each wavelength. */
+static Rgb listed(Mitsuba *m, const SheenXml *e, bool regular, MitsubaColor kind)
+{
+    double *values, *lambda;
+    uint32_t n, n_lambda;
+    bool ok = numbers_of(m, e, "values", &values, &n);
+    if (ok && regular) {
+        double range[2] = {sheen_mi_float(m, e, "wavelength_min", 360.0),
+                           sheen_mi_float(m, e, "wavelength_max", 830.0)};
+        const char *text = sheen_mi_string(m, e, "range", NULL);
+        ok = (!text || sheen_mi_numbers(text, 2, range) == 2) && range[0] < range[1] && n > 1;
+        lambda = ok ? SHEEN_ARENA_NEW(m->scratch, double, n) : NULL;
+        for (uint32_t i = 0; lambda && i < n; ++i) lambda[i] = range[0] + (range[1] - range[0]) * i / (n - 1);
+        ok = lambda != NULL;
+    } else if (ok) {
+        ok = numbers_of(m, e, "wavelengths", &lambda, &n_lambda) && n == n_lambda;
+        for (uint32_t i = 1; ok && i < n; ++i) ok = lambda[i] > lambda[i - 1];
+    }
+    if (!ok) {
+        sheen_mi_fail(m, SHEEN_ERR_PARSE, e, "the spectrum needs a finite value for each of its rising wavelengths");
+        return rgb_gray(0.0f);
+    }
+    return fold_spectrum(&(SheenSpectrum){n, lambda, values}, kind);
+}
+
+/** One number or three for red, green and blue, whatever they stand for. */
+static Rgb raw_constant(Mitsuba *m, const SheenXml *e)
+{
+    const SheenXml *c = sheen_mi_child(e, "value");
+    const char *text = c ? sheen_xml_attribute(c, "value") : NULL;
+    if (text) return rgb_of(m, c, text, false);
+    sheen_mi_fail(m, SHEEN_ERR_PARSE, e, "the spectrum has no 'value'");
+    return rgb_gray(0.0f);
+}
+
 /** <spectrum type="..."> of Mitsuba 3. */
 static Rgb plugin_of(Mitsuba *m, const SheenXml *e, MitsubaColor kind)
 {
@@ -174,6 +226,9 @@ static Rgb plugin_of(Mitsuba *m, const SheenXml *e, MitsubaColor kind)
     if (sheen_mi_same(type, "rgb") || sheen_mi_same(type, "srgb"))
         return sheen_mi_color(m, e, "color", kind, sheen_mi_color(m, e, "value", kind, rgb_gray(0.5f)));
     if (sheen_mi_same(type, "d65")) return rgb_gray((float)sheen_mi_float(m, e, "scale", 1.0)); // sRGB's white
+    if (sheen_mi_same(type, "rawconstant")) return raw_constant(m, e);
+    bool regular = sheen_mi_same(type, "regular");
+    if (regular || sheen_mi_same(type, "irregular")) return listed(m, e, regular, kind);
     if (!e->warned) sheen_xml_warn(m->log, e, "the spectrum '%s' is not supported: gray 0.5 stands in", type);
     return rgb_gray(0.5f);
 }

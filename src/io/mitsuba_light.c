@@ -75,9 +75,47 @@ static void read_envmap(Mitsuba *m, SheenXml *e)
     if (sheen_mi_bitmap(m, e, true, 0.0, &l.environment)) sheen_builder_add_light(m->builder, &l);
 }
 
+/** Light in all directions of a picture that is projected: a spot of its mean as wide as the picture stands in. */
+static void read_projector(Mitsuba *m, SheenXml *e)
+{
+    Transform t = sheen_mi_transform(m, e, "to_world");
+    SheenLight l = {.kind = SHEEN_LIGHT_SPOT, .position = transform_point(&t, v3(0, 0, 0)), .direction = axis_of(&t)};
+    SheenTexture picture = sheen_mi_texture(m, e, "irradiance", rgb_gray(1.0f));
+    float scale = (float)sheen_mi_float(m, e, "scale", 1.0);
+    // Mitsuba's radiance on the axis has this factor pi.
+    l.radiance = rgb_scale(sheen_texture_mean(&picture), scale * SHEEN_PI);
+    double fov = sheen_mi_float(m, e, "fov", 39.6); // of 50 mm
+    if (!m->status && !(fov > 0.0 && fov < 180.0))
+        sheen_mi_fail(m, SHEEN_ERR_PARSE, e, "a projector needs 0 < fov < 180, not %g", fov);
+    if (m->status) return;
+    l.cos_inner = l.cos_outer = (float)cos(0.5 * fov * (3.14159265358979323846 / 180.0));
+    sheen_xml_warn(m->log, e, "the light 'projector' is not supported: a spot of its picture's mean stands in");
+    sheen_mi_ignore(e, "focal_length fov_axis");
+    sheen_builder_add_light(m->builder, &l);
+}
+
+/** The mean over a span of time: that of one hour stands in. */
+static void read_timed_sky(Mitsuba *m, SheenXml *e)
+{
+    sheen_xml_warn(m->log, e, "the light '%s' is not supported: 'sunsky' in the afternoon stands in", sheen_mi_type(e));
+    sheen_mi_ignore(e, "start_year start_month start_day start_hour start_minute start_second end_year end_month "
+                       "end_day end_hour end_minute end_second window_start_time window_end_time shutter_open "
+                       "shutter_close");
+    sheen_mi_sky(m, e);
+}
+
 static const Plugin plugins[] = {
-    {"point", read_point},   {"spot", read_spot},   {"directional", read_directional}, {"constant", read_constant},
-    {"envmap", read_envmap}, {"sky", sheen_mi_sky}, {"sunsky", sheen_mi_sky},          {"sun", sheen_mi_sky},
+    {"point", read_point},
+    {"spot", read_spot},
+    {"directional", read_directional},
+    {"constant", read_constant},
+    {"envmap", read_envmap},
+    {"sky", sheen_mi_sky},
+    {"sunsky", sheen_mi_sky},
+    {"sun", sheen_mi_sky},
+    {"projector", read_projector},
+    {"timed_sunsky", read_timed_sky},
+    {"avg_sunsky", read_timed_sky},
 };
 
 void sheen_mi_emitter(Mitsuba *m, SheenXml *e)

@@ -245,6 +245,16 @@ static const char *name_of(Mitsuba *m, const SheenXml *e)
     return sheen_arena_strdup(m->arena, id ? id : sheen_mi_string(m, e, "filename", sheen_mi_type(e)));
 }
 
+/** In version 0.6 the border of a medium that has no material is not seen. */
+static bool has_medium(Mitsuba *m, const SheenXml *e)
+{
+    for (SheenXml *c = e->first; c && !m->status; c = c->next) {
+        const SheenXml *target = sheen_mi_resolve(m, c);
+        if (target && strcmp(target->tag, "medium") == 0) return true;
+    }
+    return false;
+}
+
 void sheen_mi_shape(Mitsuba *m, SheenXml *e, bool in_group)
 {
     const Plugin *plugin = NULL;
@@ -258,7 +268,11 @@ void sheen_mi_shape(Mitsuba *m, SheenXml *e, bool in_group)
     if (!plugin->read(m, e, &shape)) return;
     SheenXml *bsdf = sheen_mi_nested(m, e, "bsdf"), *emitter = sheen_mi_nested(m, e, "emitter");
     if (m->status) return;
-    shape.material = emitter && !bsdf ? sheen_mi_lamp_material(m) : sheen_mi_material(m, bsdf);
+    bool clear = !bsdf && !emitter && m->version == 0 && has_medium(m, e);
+    if (m->status) return;
+    shape.material = clear              ? sheen_mi_clear_material(m)
+                     : emitter && !bsdf ? sheen_mi_lamp_material(m)
+                                        : sheen_mi_material(m, bsdf);
     uint32_t index = sheen_builder_add_shape(m->builder, &shape);
     if (emitter) add_area_light(m, emitter, index, in_group);
     if (!m->status) sheen_mi_report_unused(m, e);

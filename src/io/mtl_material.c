@@ -172,8 +172,8 @@ static SheenStatus make_principled(MtlReader *r, const MtlMaterial *m, SheenMate
 {
     SheenPrincipled *p = SHEEN_ARENA_NEW(r->arena, SheenPrincipled, 1);
     if (!p) return no_memory(r);
-    SheenTexture *zero[] = {&p->anisotropic, &p->spec_trans, &p->spec_tint, &p->sheen,
-                            &p->sheen_tint,  &p->flatness,   &p->clearcoat, &p->clearcoat_gloss};
+    SheenTexture *zero[] = {&p->anisotropic, &p->spec_trans, &p->spec_tint,       &p->sheen,     &p->sheen_tint,
+                            &p->flatness,    &p->clearcoat,  &p->clearcoat_gloss, &p->diff_trans};
     for (size_t i = 0; i < sizeof zero / sizeof *zero; ++i) *zero[i] = sheen_texture_constant(rgb_gray(0.0f));
     bool metal = m->of_blender && (m->illum == 3 || m->illum == 6);
     float metallic = m->metallic >= 0.0f ? m->metallic : metal ? m->ambient.r : 0.0f;

@@ -27,12 +27,14 @@ typedef struct BsdfOps {
     void (*roughen)(BsdfLobe *b, float least_alpha);
 } BsdfOps;
 
-extern const BsdfOps sheen_lobe_lambert, sheen_lobe_coated_lambert, sheen_lobe_diffuse_transmit; // diffuse surfaces
+extern const BsdfOps sheen_lobe_lambert, sheen_lobe_coated_lambert, sheen_lobe_rough_diffuse,
+    sheen_lobe_diffuse_transmit; // diffuse surfaces
 extern const BsdfOps sheen_lobe_conductor, sheen_lobe_dielectric, sheen_lobe_thin_dielectric,
     sheen_lobe_coat;                                                                                 // delta lobes
 extern const BsdfOps sheen_lobe_rough_conductor, sheen_lobe_rough_dielectric, sheen_lobe_rough_coat; // microfacets
 extern const BsdfOps sheen_lobe_phong, sheen_lobe_ward;                                              // empirical
 extern const BsdfOps sheen_lobe_principled_diffuse, sheen_lobe_principled_specular, sheen_lobe_principled_clearcoat;
+extern const BsdfOps sheen_lobe_thin_reflection, sheen_lobe_thin_transmission; // of a principled sheet
 
 /** A delta lobe with its factor; pdf is set by the kind. */
 static inline BsdfSample bsdf_delta(Vec3 wi_l, Rgb weight, float pdf, bool transmit)
@@ -93,6 +95,9 @@ static inline float bsdf_cosine_pdf(Vec3 wo, Vec3 wi)
 
 /** The albedo of a lobe by a fixed set of its own samples. @param ior  of light that goes through, else 1 */
 Rgb sheen_bsdf_albedo_by_samples(const BsdfLobe *b, Vec3 wo, float ior);
+
+/** The albedo of a lobe that reflects nearly as Lambert's, alike about the normal, by a quadrature of 24 directions. */
+Rgb sheen_bsdf_albedo_of_diffuse(const BsdfLobe *b, Vec3 wo);
 
 /** The microfacet normal halfway between two directions on the same side, z > 0. */
 static inline Vec3 bsdf_half(Vec3 wo, Vec3 wi)

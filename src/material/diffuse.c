@@ -13,6 +13,28 @@ bool sheen_bsdf_sample_cosine(const BsdfLobe *b, Vec3 wo, Vec2 u, BsdfSample *ou
     return true;
 }
 
+// Gauss-Legendre's rule in the cosine, which Schlick's powers are polynomials of, and the midpoint rule in the azimuth:
+// f is symmetric about the plane of wo.
+Rgb sheen_bsdf_albedo_of_diffuse(const BsdfLobe *b, Vec3 wo)
+{
+    static const float x[] = {0.0337652429f, 0.169395307f, 0.380690407f, 0.619309593f, 0.830604693f, 0.966234757f};
+    static const float w[] = {0.0856622462f, 0.180380787f, 0.233956967f, 0.233956967f, 0.180380787f, 0.0856622462f};
+    static const Vec2 azimuths[] = {{0.923879533f, 0.382683432f},
+                                    {0.382683432f, 0.923879533f},
+                                    {-0.382683432f, 0.923879533f},
+                                    {-0.923879533f, 0.382683432f}};
+    Rgb sum = rgb_gray(0.0f);
+    if (!(wo.z > 0.0f)) return sum;
+    const Vec3 seen = v3(safe_sqrtf(1.0f - wo.z * wo.z), 0.0f, wo.z);
+    for (int i = 0; i < 6; ++i) {
+        float s = safe_sqrtf(1.0f - x[i] * x[i]);
+        for (int k = 0; k < 4; ++k)
+            sum = rgb_mad(sum, 0.5f * SHEEN_PI * w[i],
+                          b->ops->eval(b, seen, v3(s * azimuths[k].x, s * azimuths[k].y, x[i])));
+    }
+    return rgb_unit(sum);
+}
+
 static float lambert_pdf(const BsdfLobe *b, Vec3 wo, Vec3 wi)
 {
     (void)b;

@@ -3,6 +3,8 @@
 #include "material/bsdf_ops.h"
 #include "scene/coat.h"
 
+#include <string.h>
+
 // Where lobes are being added: the point, and what all of them are inside of.
 typedef struct Place {
     const SheenScene *scene;
@@ -135,6 +137,13 @@ static void add_lambert(Place *p, const Inside *in, const SheenMaterial *m)
     add_lobe(p, in, &sheen_lobe_lambert, m)->reflectance = color_at(p, &m->reflectance);
 }
 
+static void add_rough_diffuse(Place *p, const Inside *in, const SheenMaterial *m)
+{
+    BsdfLobe *lobe = add_lobe(p, in, &sheen_lobe_rough_diffuse, m);
+    lobe->reflectance = color_at(p, &m->reflectance);
+    lobe->microfacet.alpha_u = lobe->microfacet.alpha_v = clampf(number_at(p, &m->alpha_u), 0.0f, 10.0f);
+}
+
 // A lobe of an interface, metal or dielectric, smooth or rough.
 static void add_interface(Place *p, const Inside *in, const SheenMaterial *m, const BsdfOps *ops, bool rough)
 {
@@ -170,6 +179,13 @@ static void add_glossy_on_diffuse(Place *p, const Inside *in, const SheenMateria
     }
 }
 
+static Microfacet principled_microfacet(const Place *p, const SheenMaterial *m, float roughness)
+{
+    float alpha = sqrf(roughness);
+    float aspect = m->anisotropic ? sqrtf(1.0f - 0.9f * unit_at(p, &m->principled->anisotropic)) : 1.0f;
+    return (Microfacet){SHEEN_DISTRIBUTION_GGX, maxf(alpha / aspect, 0.001f), maxf(alpha * aspect, 0.001f)};
+}
+
 static void add_principled(Place *p, const Inside *in, const SheenMaterial *m)
 {
     const SheenPrincipled *t = m->principled;
@@ -185,19 +201,47 @@ static void add_principled(Place *p, const Inside *in, const SheenMaterial *m)
     diffuse->principled.clearcoat = unit_at(p, &t->clearcoat);
     diffuse->principled.clearcoat_gloss = unit_at(p, &t->clearcoat_gloss);
 
-    float alpha = sqrf(diffuse->principled.roughness);
-    float aspect = m->anisotropic ? sqrtf(1.0f - 0.9f * unit_at(p, &t->anisotropic)) : 1.0f;
     BsdfLobe *specular = &p->bsdf->lobes[p->bsdf->n_lobes++];
     *specular = *diffuse;
     specular->ops = &sheen_lobe_principled_specular;
-    specular->microfacet =
-        (Microfacet){SHEEN_DISTRIBUTION_GGX, maxf(alpha / aspect, 0.001f), maxf(alpha * aspect, 0.001f)};
+    specular->microfacet = principled_microfacet(p, m, diffuse->principled.roughness);
     float gloss = diffuse->principled.clearcoat_gloss;
     if (diffuse->principled.clearcoat > 0.0f) {
         BsdfLobe *coat = &p->bsdf->lobes[p->bsdf->n_lobes++];
         *coat = *diffuse;
         coat->ops = &sheen_lobe_principled_clearcoat;
         coat->microfacet.alpha_u = coat->microfacet.alpha_v = lerpf(0.1f, 0.001f, gloss);
+    }
+}
+
+// What is not diffuse is reflected and let through, by microfacets that look smoother from a denser sheet.
+static void add_principled_thin(Place *p, const Inside *in, const SheenMaterial *m)
+{
+    const SheenPrincipled *t = m->principled;
+    float specular = unit_at(p, &t->spec_trans), behind = clampf(0.5f * number_at(p, &t->diff_trans), 0.0f, 1.0f);
+    Inside diffuse = *in, part = *in;
+    diffuse.weight *= (1.0f - specular) * (1.0f - behind);
+    BsdfLobe *reflect = add_lobe(p, &diffuse, &sheen_lobe_principled_diffuse, m);
+    memset(&reflect->principled, 0, sizeof reflect->principled);
+    reflect->reflectance = reflect->transmittance = color_at(p, &m->reflectance);
+    reflect->principled.roughness = unit_at(p, &m->alpha_u);
+    reflect->principled.spec_tint = unit_at(p, &t->spec_tint);
+    reflect->principled.sheen = unit_at(p, &t->sheen);
+    reflect->principled.sheen_tint = unit_at(p, &t->sheen_tint);
+    reflect->principled.flatness = unit_at(p, &t->flatness);
+    if (behind > 0.0f) {
+        part.weight = in->weight * (1.0f - specular) * behind;
+        add_lobe(p, &part, &sheen_lobe_diffuse_transmit, m)->transmittance = reflect->reflectance;
+    }
+    if (!(specular > 0.0f)) return;
+    part.weight = in->weight * specular;
+    const float scale[2] = {1.0f, 0.65f * m->ior - 0.35f};
+    for (int i = 0; i < 2; ++i) {
+        BsdfLobe *lobe = &p->bsdf->lobes[p->bsdf->n_lobes++];
+        *lobe = *reflect;
+        lobe->ops = i == 0 ? &sheen_lobe_thin_reflection : &sheen_lobe_thin_transmission;
+        lobe->weight = part.weight;
+        lobe->microfacet = principled_microfacet(p, m, maxf(scale[i], 0.0f) * reflect->principled.roughness);
     }
 }
 
@@ -265,6 +309,12 @@ static void add_leaf(Place *p, const Inside *in, const SheenMaterial *m)
     case SHEEN_MATERIAL_PLASTIC:
     case SHEEN_MATERIAL_ROUGH_PLASTIC:
         add_plastic(p, in, m);
+        break;
+    case SHEEN_MATERIAL_ROUGH_DIFFUSE:
+        add_rough_diffuse(p, in, m);
+        break;
+    case SHEEN_MATERIAL_PRINCIPLED_THIN:
+        add_principled_thin(p, in, m);
         break;
     case SHEEN_MATERIAL_DIFFUSE_TRANSMIT:
         add_interface(p, in, m, &sheen_lobe_diffuse_transmit, false);

@@ -6,6 +6,7 @@ bool sheen_material_may_be_delta(const SheenScene *scene, uint32_t material)
     const SheenMaterial *m = &scene->materials[material];
     switch (m->kind) {
     case SHEEN_MATERIAL_DIFFUSE:
+    case SHEEN_MATERIAL_ROUGH_DIFFUSE:
     case SHEEN_MATERIAL_PLASTIC:
     case SHEEN_MATERIAL_ROUGH_PLASTIC:
     case SHEEN_MATERIAL_DIFFUSE_TRANSMIT:

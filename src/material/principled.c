@@ -4,6 +4,7 @@
 // plugin principled: its clear coat has no 1 / (4 cos cos), and its sheen is not divided by pi.
 #include "material/bsdf_ops.h"
 #include "material/microfacet_lobe.h"
+#include "material/principled_lobe.h"
 
 // Shares of the light that is not reflected like a metal's.
 static float opaque_share(const BsdfLobe *b)
@@ -78,11 +79,6 @@ static bool diffuse_sample(const BsdfLobe *b, Vec3 wo, float choice, Vec2 u, Bsd
     return sheen_bsdf_sample_cosine(b, wo, u, out);
 }
 
-static Rgb any_albedo(const BsdfLobe *b, Vec3 wo)
-{
-    return sheen_bsdf_albedo_by_samples(b, wo, b->material->ior);
-}
-
 static float diffuse_importance(const BsdfLobe *b, Vec3 wo)
 {
     if (!(wo.z > 0.0f)) return 0.0f;
@@ -93,16 +89,14 @@ const BsdfOps sheen_lobe_principled_diffuse = {.class = SHEEN_BSDF_DIFFUSE,
                                                .eval = diffuse_eval,
                                                .pdf = diffuse_pdf,
                                                .sample = diffuse_sample,
-                                               .albedo = any_albedo,
+                                               .albedo = sheen_bsdf_albedo_of_diffuse,
                                                .importance = diffuse_importance};
 
 // ---- specular ---------------------------------------------------------------------------------------------------
 
-// Reflectance of a microfacet. From behind there is only glass, without tint or metal.
-static Rgb fresnel_of(const BsdfLobe *b, float F, float cosine, bool front)
+Rgb sheen_principled_fresnel(const BsdfLobe *b, float F, float cosine)
 {
     float eta = b->material->ior, metallic = b->principled.metallic, tint = b->principled.spec_tint;
-    if (!front) return rgb_gray(glass_share(b) * F);
     Rgb sum = rgb_gray((1.0f - metallic) * (1.0f - tint) * F);
     if (metallic > 0.0f) sum = rgb_mad(sum, metallic, schlick(b->reflectance, cosine, eta));
     if (tint > 0.0f) {
@@ -110,6 +104,12 @@ static Rgb fresnel_of(const BsdfLobe *b, float F, float cosine, bool front)
         sum = rgb_mad(sum, (1.0f - metallic) * tint, schlick(r0, cosine, eta));
     }
     return sum;
+}
+
+// From behind there is only glass, without tint or metal.
+static Rgb fresnel_of(const BsdfLobe *b, float F, float cosine, bool front)
+{
+    return front ? sheen_principled_fresnel(b, F, cosine) : rgb_gray(glass_share(b) * F);
 }
 
 static Rgb refracted_color(const BsdfLobe *b)
@@ -162,6 +162,11 @@ static bool specular_sample(const BsdfLobe *b, Vec3 wo, float choice, Vec2 u, Bs
     if (!(out->pdf > 0.0f)) return false;
     out->weight = rgb_scale(specular_eval(b, wo, out->wi_l), 1.0f / out->pdf);
     return true;
+}
+
+static Rgb any_albedo(const BsdfLobe *b, Vec3 wo)
+{
+    return sheen_bsdf_albedo_by_samples(b, wo, b->material->ior);
 }
 
 static float specular_importance(const BsdfLobe *b, Vec3 wo)

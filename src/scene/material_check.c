@@ -26,6 +26,8 @@ static const Traits traits_of_kind[] = {
     [SHEEN_MATERIAL_PHONG] = {.n_lobes = 2},
     [SHEEN_MATERIAL_WARD] = {.n_lobes = 2, .has_alpha = true, .anisotropic = true},
     [SHEEN_MATERIAL_PRINCIPLED] = {.n_lobes = 3, .has_ior = true, .anisotropic = true},
+    [SHEEN_MATERIAL_PRINCIPLED_THIN] = {.n_lobes = 4, .has_ior = true, .anisotropic = true},
+    [SHEEN_MATERIAL_ROUGH_DIFFUSE] = {.n_lobes = 1},
     [SHEEN_MATERIAL_BLEND] = {.n_nested = 2},
     [SHEEN_MATERIAL_SIDES] = {.n_nested = 2, .n_wraps = 2},
     [SHEEN_MATERIAL_MASK] = {.n_lobes = 1, .n_nested = 1},
@@ -97,9 +99,12 @@ static void check_principled(const Check *c, SheenArena *arena)
         {"flatness", &p->flatness},       {"clearcoat", &p->clearcoat}, {"clearcoat_gloss", &p->clearcoat_gloss}};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
         texture_in_range(c, all[i].name, all[i].texture, 0.0f, 1.0f, 0.0f);
+    texture_in_range(c, "diff_trans", &p->diff_trans, 0.0f, 2.0f, 0.0f);
     texture_in_range(c, "roughness", &c->m->alpha_u, 0.0f, 1.0f, 0.5f);
     c->m->principled = p;
-    c->m->has_two_sides = !is_zero(&p->spec_trans);
+    bool sheet = c->m->kind == SHEEN_MATERIAL_PRINCIPLED_THIN; // looks alike from both sides
+    c->m->has_two_sides = !sheet && !is_zero(&p->spec_trans);
+    c->m->two_sided = c->m->two_sided || sheet;
     c->m->anisotropic = !is_zero(&p->anisotropic);
 }
 
@@ -114,6 +119,7 @@ static void check_numbers(const Check *c, const Traits *t)
         m->anisotropic = t->anisotropic && !same_texture(&m->alpha_u, &m->alpha_v);
     }
     if (m->kind == SHEEN_MATERIAL_PLASTIC) m->inside = minf(sheen_fresnel_diffuse(1.0f / m->ior), 0.999f);
+    if (m->kind == SHEEN_MATERIAL_ROUGH_DIFFUSE) texture_in_range(c, "the roughness", &m->alpha_u, 0.0f, 10.0f, 0.2f);
     if (m->kind == SHEEN_MATERIAL_PHONG) m->exponent = in_range(c, "the exponent", m->exponent, 0.0f, 1e6f, 10.0f);
     if (m->kind == SHEEN_MATERIAL_BLEND) texture_in_range(c, "the weight", &m->weight, 0.0f, 1.0f, 0.5f);
     if (m->kind == SHEEN_MATERIAL_MASK) texture_in_range(c, "the opacity", &m->weight, 0.0f, 1.0f, 0.5f);
@@ -158,7 +164,7 @@ SheenStatus sheen_material_complete(const SheenLog *log, const char *scene, Shee
     m->n_lobes = t->n_lobes;
     m->n_wraps = t->n_wraps;
     check_numbers(&c, t);
-    if (m->kind == SHEEN_MATERIAL_PRINCIPLED) {
+    if (m->kind == SHEEN_MATERIAL_PRINCIPLED || m->kind == SHEEN_MATERIAL_PRINCIPLED_THIN) {
         check_principled(&c, arena);
         if (!m->principled) return SHEEN_ERR_NOMEM;
     }

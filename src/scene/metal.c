@@ -17,11 +17,13 @@ static const Metal metals[] = {
     {"Ag", {0.155276f, 0.116728f, 0.138388f}, {4.82835f, 3.12222f, 2.1469f}},
     {"Al", {1.6575f, 0.880405f, 0.521244f}, {9.22381f, 6.2695f, 4.837f}},
     {"AlAs", {3.6053f, 3.23294f, 2.21632f}, {0.000679437f, 0.0f, 0.00751271f}},
+    {"AlSb", {0.0f, 4.139375f, 4.669254f}, {0.0f, 0.094009f, 1.30057f}},
     {"Au", {0.143036f, 0.375307f, 1.44205f}, {3.983f, 2.38556f, 1.60336f}},
     {"Be", {4.18501f, 3.18503f, 2.78406f}, {3.83547f, 3.01012f, 2.86899f}},
     {"Cr", {4.36967f, 2.91651f, 1.6549f}, {5.20655f, 4.23131f, 3.7547f}},
     {"CsI", {2.1449f, 1.70232f, 1.66243f}, {0.0f, 0.0f, 0.0f}},
     {"Cu", {0.201005f, 0.92375f, 1.10222f}, {3.91326f, 2.45305f, 2.14209f}},
+    {"Cu_palik", {0.213229f, 0.919715f, 1.102411f}, {3.921873f, 2.457332f, 2.136584f}},
     {"Cu2O", {3.55177f, 2.94987f, 2.75188f}, {0.114207f, 0.193897f, 0.606134f}},
     {"CuO", {3.24754f, 2.44781f, 2.21022f}, {0.52109f, 0.570031f, 0.722179f}},
     {"d-C", {2.70872f, 2.31883f, 2.2289f}, {0.0f, 0.0f, 0.0f}},
@@ -37,34 +39,41 @@ static const Metal metals[] = {
     {"Ni_palik", {2.3673f, 1.66337f, 1.46708f}, {4.49881f, 3.05015f, 2.34544f}},
     {"Rh", {2.58579f, 1.86022f, 1.55426f}, {6.78226f, 4.70299f, 3.97607f}},
     {"Se", {4.05831f, 2.84294f, 2.82085f}, {0.75405f, 0.638444f, 0.521808f}},
+    {"Se-e", {5.722849f, 4.165736f, 4.081338f}, {0.871136f, 1.105157f, 1.56532f}},
     {"SiC", {3.17234f, 2.52597f, 2.47937f}, {0.0f, 0.0f, 1.01925e-05f}},
     {"SnTe", {4.52425f, 1.98164f, 1.28159f}, {0.0f, 0.0f, 0.0f}},
     {"Ta", {2.06272f, 2.39294f, 2.62793f}, {2.40836f, 1.74149f, 1.94703f}},
     {"Te", {7.39023f, 4.4821f, 2.63711f}, {3.25602f, 3.52706f, 3.29205f}},
+    {"Te-e", {7.508907f, 4.296429f, 2.369988f}, {5.583929f, 4.947205f, 3.997592f}},
     {"ThF4", {1.83071f, 1.44223f, 1.38765f}, {0.0f, 0.0f, 0.0f}},
     {"TiC", {3.70053f, 2.83742f, 2.58229f}, {3.26564f, 2.35159f, 2.17279f}},
     {"TiN", {1.64845f, 1.15052f, 1.37982f}, {3.36833f, 1.9435f, 1.10207f}},
     {"TiO2", {3.45661f, 2.80174f, 2.90517f}, {0.000105265f, 0.0f, 0.000652887f}},
+    {"TiO2-e", {3.106565f, 2.513168f, 2.582444f}, {2.97516e-05f, 0.0f, 0.000182698f}},
     {"VC", {3.65757f, 2.75274f, 2.53267f}, {3.0683f, 2.19869f, 1.96319f}},
     {"V_palik", {4.27758f, 3.51295f, 2.76107f}, {3.4913f, 2.88945f, 3.11152f}},
     {"VN", {2.8656f, 2.11919f, 1.94009f}, {3.03224f, 2.05612f, 1.61631f}},
     {"W", {4.37082f, 3.30025f, 2.99841f}, {3.50064f, 2.60487f, 2.27323f}},
 };
 
-/** @return true when `name` is the entry's, or the entry's without "_palik". */
-static bool matches(const char *entry, const char *name)
+/** Length without "_palik", the source of a measurement: where a metal has no other, both names mean the same. */
+static size_t bare_length(const char *name)
 {
-    size_t n = strlen(name);
-    return strncmp(entry, name, n) == 0 && (entry[n] == '\0' || strcmp(entry + n, "_palik") == 0);
+    size_t n = strlen(name), m = strlen("_palik");
+    return n > m && strcmp(name + n - m, "_palik") == 0 ? n - m : n;
 }
 
 bool sheen_metal_find(const char *name, Rgb *eta, Rgb *k)
 {
-    for (size_t i = 0; i < sizeof metals / sizeof *metals; ++i)
-        if (matches(metals[i].name, name)) {
-            *eta = metals[i].eta;
-            *k = metals[i].k;
-            return true;
-        }
-    return false;
+    const Metal *found = NULL;
+    for (size_t i = 0; i < sizeof metals / sizeof *metals; ++i) {
+        size_t n = bare_length(metals[i].name);
+        bool exact = strcmp(metals[i].name, name) == 0;
+        if (exact || (!found && n == bare_length(name) && strncmp(metals[i].name, name, n) == 0)) found = &metals[i];
+        if (exact) break;
+    }
+    if (!found) return false;
+    *eta = found->eta;
+    *k = found->k;
+    return true;
 }

@@ -81,6 +81,8 @@ typedef enum SheenMaterialKind {
     SHEEN_MATERIAL_PHONG,            // reflectance, specular_reflectance, exponent
     SHEEN_MATERIAL_WARD,             // reflectance, specular_reflectance, alpha_u, alpha_v, ward
     SHEEN_MATERIAL_PRINCIPLED,       // reflectance (the base colour), ior, alpha_u (the roughness), principled
+    SHEEN_MATERIAL_PRINCIPLED_THIN,  // the same of a sheet without thickness
+    SHEEN_MATERIAL_ROUGH_DIFFUSE,    // Oren and Nayar's: reflectance, alpha_u, fast
     // Materials that hold others.
     SHEEN_MATERIAL_BLEND,   // 1 - weight of nested[0] and weight of nested[1]
     SHEEN_MATERIAL_SIDES,   // nested[0] on the front, nested[1] on the back, seen as if that were the front
@@ -97,15 +99,18 @@ enum { SHEEN_MATERIAL_MAX_LOBES = 8, SHEEN_MATERIAL_MAX_WRAPS = 8 };
 
 typedef enum SheenWard { SHEEN_WARD_BALANCED, SHEEN_WARD_DUER, SHEEN_WARD_ORIGINAL } SheenWard;
 
-/** What a principled material has beyond the others' parameters; all in [0, 1]. */
+/** What a principled material has beyond the others' parameters; all in [0, 1] but diff_trans, in [0, 2]. */
 typedef struct SheenPrincipled {
-    SheenTexture anisotropic, metallic, spec_trans, spec_tint, sheen, sheen_tint, flatness, clearcoat, clearcoat_gloss;
+    SheenTexture anisotropic, spec_trans, spec_tint, sheen, sheen_tint, flatness;
+    SheenTexture metallic, clearcoat, clearcoat_gloss; // not of a sheet
+    SheenTexture diff_trans;                           // of a sheet: twice the share of diffuse light that goes through
 } SheenPrincipled;
 
 typedef struct SheenMaterial {
     SheenMaterialKind kind;
     bool two_sided;                      // the back side looks like the front (not where something transmits)
     bool nonlinear;                      // plastics: colour shifts by light that is reflected inside
+    bool fast;                           // rough diffuse: the simpler formula
     SheenTexture reflectance;            // diffuse albedo
     SheenTexture specular_reflectance;   // factor on reflection
     SheenTexture specular_transmittance; // factor on transmission

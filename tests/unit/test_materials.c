@@ -26,6 +26,11 @@ typedef struct Case {
 static const Case cases[] = {
     {"diffuse", DIFFUSE, 1, true, true},
     {"twosided", BSDF("twosided", DIFFUSE), 1, true, true},
+    {"clay", BSDF("roughdiffuse", RGB(reflectance, 0.2 0.9 0.8) F(alpha, 0.5)), 1, false, true},
+    {"clay, fast",
+     BSDF("roughdiffuse",
+          RGB(diffuse_reflectance, 0.2 0.9 0.8) F(alpha, 0.7) "<boolean name='useFastApprox' value='true'/>"),
+     1, false, true},
     {"sides", BSDF("twosided", DIFFUSE BSDF("roughconductor", GOLD F(alpha, 0.4))), 1, true, true},
     {"difftrans", BSDF("difftrans", RGB(transmittance, 0.3 0.6 0.9)), 1, true, true},
     {"beckmann", BSDF("roughconductor", GOLD F(alpha, 0.15)), 1, true, true},
@@ -57,6 +62,12 @@ static const Case cases[] = {
     {"principled", BSDF("principled", BASE F(clearcoat, 0.8) F(metallic, 0.3) F(spec_tint, 0.5)), 1, true, true},
     {"cloth", BSDF("principled", BASE F(sheen, 0.7) F(sheen_tint, 0.5) F(flatness, 0.4)), 1, false, true},
     {"brushed", BSDF("principled", BASE F(metallic, 1) F(anisotropic, 0.9) F(roughness, 0.5)), 1, true, true},
+    {"leaf", BSDF("principledthin", BASE F(sheen, 0.5) F(sheen_tint, 0.3) F(flatness, 0.5) F(diff_trans, 1.2)), 1,
+     false, true},
+    {"foil",
+     BSDF("principledthin",
+          BASE F(spec_trans, 0.8) F(spec_tint, 0.4) F(roughness, 0.6) F(anisotropic, 0.5) F(diff_trans, 0.6)),
+     1, true, false},
     {"frosted", BSDF("principled", BASE F(spec_trans, 0.7) F(eta, 1.5) F(roughness, 0.5)), 1.5f, true, true},
 };
 enum { N_CASES = sizeof cases / sizeof *cases };
@@ -261,6 +272,66 @@ static void test_parts_make_the_whole(void **state)
     }
 }
 
+// ---- rough diffuse surfaces -------------------------------------------------------------------------------------
+
+/** Values of both fits in orennayar1994, computed apart from the angles themselves. */
+static void test_rough_diffuse_follows_its_paper(void **state)
+{
+    (void)state;
+    static const struct {
+        float degrees_i, degrees_o, phi;
+        double full, fast;
+    } values[] = {{0, 0, 0, 0.23664532783832293, 0.21966880057518742},
+                  {30, 60, 0, 0.2680705467482162, 0.25298030029209573},
+                  {60, 30, 120, 0.2221019774876878, 0.21966880057518742},
+                  {75, 70, 180, 0.15623114709799227, 0.21966880057518742},
+                  {45, 45, 90, 0.2378019771340489, 0.21966880057518742}};
+    SheenScene *scene[2] = {
+        scene_of(BSDF("roughdiffuse", RGB(reflectance, 0.8) F(alpha, 0.5))),
+        scene_of(BSDF("roughdiffuse",
+                      RGB(reflectance, 0.8) F(alpha, 0.5) "<boolean name='use_fast_approx' value='true'/>"))};
+    for (int i = 0; i < 2; ++i) {
+        Bsdf b = bsdf_at(scene[i], v2(0, 0));
+        for (size_t k = 0; k < sizeof values / sizeof *values; ++k) {
+            const float degree = SHEEN_PI / 180;
+            Vec3 wi = direction(values[k].degrees_i * degree, 1);
+            Vec3 wo = direction(values[k].degrees_o * degree, 1 + values[k].phi * degree);
+            assert_near("f", "clay", wo, (double)(sheen_bsdf_eval(&b, wo, wi).g / wi.z),
+                        i ? values[k].fast : values[k].full, 2e-6);
+        }
+    }
+    sheen_scene_destroy(&scene[0]);
+    sheen_scene_destroy(&scene[1]);
+}
+
+/** The quadrature of diffuse lobes against many directions, grazing views included. */
+static void test_diffuse_albedos_are_exact(void **state)
+{
+    (void)state;
+    static const char *const xml[] = {
+        BSDF("roughdiffuse", RGB(reflectance, 0.9) F(alpha, 0.6)), BSDF("principled", BASE F(roughness, 0.9)),
+        BSDF("principled", BASE F(roughness, 0.2) F(sheen, 1) F(sheen_tint, 1) F(flatness, 0.8)),
+        BSDF("principledthin", BASE F(roughness, 0.7) F(sheen, 0.4) F(diff_trans, 0.5))};
+    enum { N = 256 };
+    for (size_t i = 0; i < sizeof xml / sizeof *xml; ++i) {
+        SheenScene *scene = scene_of(xml[i]);
+        Bsdf b = bsdf_at(scene, v2(0, 0));
+        for (int k = 1; k <= 10; ++k) {
+            Vec3 wo = direction(acosf(0.1f * (float)k), 0.3f);
+            double sum = 0;
+            for (int s = 0; s < N * N; ++s) {
+                Vec3 wi = warp_cosine_hemisphere(
+                    v2(((float)(s % N) + 0.5f) / (float)N, ((float)(s / N) + 0.5f) / (float)N)); // midpoint rule
+                sum += (double)(sheen_bsdf_eval_of(&b, SHEEN_BSDF_DIFFUSE, wo, wi).g / wi.z * SHEEN_PI) / (N * N);
+            }
+            // The clay has a kink where both angles are equal; a flattened lobe has 1 / (cos + cos).
+            assert_near("diffuse", xml[i], wo, (double)sheen_bsdf_diffuse(&b, wo, NULL).g, sum,
+                        i % 2 == 0 ? 3e-3 : 6e-4);
+        }
+        sheen_scene_destroy(&scene);
+    }
+}
+
 // ---- plastics ---------------------------------------------------------------------------------------------------
 
 // On a white base nothing is lost: what the interface keeps inside comes out later.
@@ -441,7 +512,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_samples_follow_the_density),   cmocka_unit_test(test_reciprocity),
-        cmocka_unit_test(test_parts_make_the_whole),         cmocka_unit_test(test_white_plastic_is_white),
+        cmocka_unit_test(test_parts_make_the_whole),         cmocka_unit_test(test_rough_diffuse_follows_its_paper),
+        cmocka_unit_test(test_diffuse_albedos_are_exact),    cmocka_unit_test(test_white_plastic_is_white),
         cmocka_unit_test(test_rough_plastic_becomes_smooth), cmocka_unit_test(test_roughening),
         cmocka_unit_test(test_which_materials_may_be_delta), cmocka_unit_test(test_delta_lobes_of_mixtures),
         cmocka_unit_test(test_extremes_stay_finite),

@@ -353,10 +353,10 @@ static void stand_ins_are_named_once(void **state)
         const char *bsdf;
         SheenMaterialKind kind;
     } cases[] = {
-        {"<bsdf type=\"roughdiffuse\" id=\"m\"><rgb name=\"reflectance\" value=\"0.25\"/></bsdf>",
+        {"<bsdf type=\"hk\" id=\"m\"><rgb name=\"albedo\" value=\"0.25\"/><float name=\"thickness\" "
+         "value=\"2\"/></bsdf>",
          SHEEN_MATERIAL_DIFFUSE},
-        {"<bsdf type=\"principledthin\" id=\"m\"><float name=\"spec_trans\" value=\"0.8\"/></bsdf>",
-         SHEEN_MATERIAL_DIFFUSE},
+        {"<bsdf type=\"pplastic\" id=\"m\"><float name=\"alpha\" value=\"0.2\"/></bsdf>", SHEEN_MATERIAL_ROUGH_PLASTIC},
         {"<bsdf type=\"marble\" id=\"m\"/>", SHEEN_MATERIAL_DIFFUSE},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
@@ -859,10 +859,10 @@ static void cameras(void **state)
         kit_assert_v3(transform_vector(&c->to_world, v3(0, 0, 1)), v3(0, 0, -1), EPS);
     }
     // Neither angle nor focal length: 50 mm on a film of 36 x 24 mm (Mitsuba 3), 768 x 576 pixels.
-    const SheenCamera *c = &kit_scene(k, "<sensor type=\"telecentric\"/>")->cameras[0];
+    const SheenCamera *c = &kit_scene(k, "<sensor type=\"spherical\"/>")->cameras[0];
     assert_true(fabs((double)c->fov_x * 180.0 / 3.14159265358979 - 38.1848) < 1e-4);
     assert_int_equal(c->width, 768);
-    assert_non_null(strstr(k->warnings, "'telecentric' is not supported: a perspective camera stands in"));
+    assert_non_null(strstr(k->warnings, "'spherical' is not supported: a perspective camera stands in"));
 }
 
 static void other_cameras(void **state)
