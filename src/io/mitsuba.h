@@ -107,8 +107,8 @@ const char *sheen_mi_path(Mitsuba *m, const SheenXml *e, const char *property, c
 
 /** mitsuba_texture.c: a property that is a colour or a texture. Reflectances are clamped to [0, 1] with a warning. */
 SheenTexture sheen_mi_texture(Mitsuba *m, const SheenXml *e, const char *name, Rgb otherwise);
-/** The same of the element itself, resolved. */
-SheenTexture sheen_mi_texture_of(Mitsuba *m, SheenXml *value, Rgb otherwise);
+/** The same of the element itself, resolved. Only reflectances are clamped. */
+SheenTexture sheen_mi_texture_of(Mitsuba *m, SheenXml *value, MitsubaColor kind, Rgb otherwise);
 /** A property that is a number or a texture; a number outside [lo, hi] is clamped with a warning. */
 SheenTexture sheen_mi_factor(Mitsuba *m, const SheenXml *e, const char *name, float otherwise, float lo, float hi);
 /** A picture file, read once for all who use it. `floats` for environments. @return false after an error. */

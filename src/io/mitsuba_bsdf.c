@@ -264,7 +264,7 @@ static float principled_thin_ior(Mitsuba *m, SheenXml *e)
     SheenXml *c = sheen_mi_child(e, "eta");
     SheenXml *value = c ? sheen_mi_resolve(m, c) : NULL;
     if (!value || strcmp(value->tag, "texture") != 0) return (float)read_ior(m, e, "eta", 1.5);
-    SheenTexture t = sheen_mi_texture_of(m, value, rgb_gray(1.5f));
+    SheenTexture t = sheen_mi_texture_of(m, value, MITSUBA_INDEX, rgb_gray(1.5f));
     return rgb_luminance(sheen_texture_mean(&t));
 }
 

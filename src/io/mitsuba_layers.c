@@ -148,20 +148,15 @@ void sheen_mi_mask(Mitsuba *m, SheenXml *e, SheenMaterial *out)
 
 // ---- maps -------------------------------------------------------------------------------------------------------
 
-/** The texture of a map, whatever its name; plugins `scale` around it multiply *scale. @return false when none */
-static bool read_map(Mitsuba *m, SheenXml *e, float *scale, SheenTexture *out)
+/** The texture of a map, whatever its name. @return false when there is none */
+static bool read_map(Mitsuba *m, SheenXml *e, SheenTexture *out)
 {
     SheenXml *texture = sheen_mi_nested(m, e, "texture");
-    for (int depth = 0; texture && sheen_mi_same(sheen_mi_type(texture), "scale") && depth < SHEEN_XML_MAX_DEPTH;
-         ++depth) {
-        *scale *= (float)sheen_mi_float(m, texture, "scale", 1.0);
-        texture = sheen_mi_nested(m, texture, "texture");
-    }
     if (!texture) {
         if (!m->status && !e->warned) sheen_xml_warn(m->log, e, "'%s' has no texture and is ignored", sheen_mi_type(e));
         return false;
     }
-    *out = sheen_mi_texture_of(m, texture, rgb_gray(0.0f));
+    *out = sheen_mi_texture_of(m, texture, MITSUBA_INDEX, rgb_gray(0.0f));
     return true;
 }
 
@@ -169,7 +164,7 @@ static void read_mapped(Mitsuba *m, SheenXml *e, SheenMaterialKind kind, SheenMa
 {
     SheenTexture map;
     float scale = (float)sheen_mi_float(m, e, "scale", 1.0);
-    if (read_map(m, e, &scale, &map)) {
+    if (read_map(m, e, &map)) {
         out->kind = kind;
         out->map = map;
         out->map_scale = scale;

@@ -224,18 +224,12 @@ static void add_area_light(Mitsuba *m, SheenXml *emitter, uint32_t shape, bool i
         return;
     }
     SheenXml *radiance = sheen_mi_child(emitter, "radiance");
-    SheenXml *target = radiance ? sheen_mi_resolve(m, radiance) : NULL;
-    Rgb color = rgb_gray(1.0f);
-    if (target && strcmp(target->tag, "texture") == 0) {
-        SheenTexture texture = sheen_mi_texture(m, emitter, "radiance", color);
-        color = sheen_texture_mean(&texture);
-        sheen_xml_warn(m->log, target, "a textured area light is not supported: its mean stands in");
-    } else {
-        color = sheen_mi_color(m, emitter, "radiance", MITSUBA_EMISSION, color);
-    }
+    SheenXml *value = radiance ? sheen_mi_resolve(m, radiance) : NULL;
+    SheenTexture texture = sheen_texture_constant(rgb_gray(1.0f));
+    if (value) texture = sheen_mi_texture_of(m, value, MITSUBA_EMISSION, texture.value);
     sheen_mi_ignore(emitter, "sampling_weight");
     sheen_mi_report_unused(m, emitter);
-    if (!m->status) sheen_builder_add_area_light(m->builder, shape, color);
+    if (!m->status) sheen_builder_add_textured_area_light(m->builder, shape, &texture);
 }
 
 /** For messages: the id, else the file's or the plugin's name. */

@@ -209,11 +209,14 @@ static Rgb clamped(Mitsuba *m, const SheenXml *at, Rgb c)
     return r;
 }
 
-SheenTexture sheen_mi_texture_of(Mitsuba *m, SheenXml *value, Rgb otherwise)
+SheenTexture sheen_mi_texture_of(Mitsuba *m, SheenXml *value, MitsubaColor kind, Rgb otherwise)
 {
     value->used = true;
-    if (strcmp(value->tag, "texture") != 0)
-        return sheen_texture_constant(clamped(m, value, sheen_mi_color_of(m, value, MITSUBA_REFLECTANCE)));
+    bool clamps = kind == MITSUBA_REFLECTANCE;
+    if (strcmp(value->tag, "texture") != 0) {
+        Rgb c = sheen_mi_color_of(m, value, kind);
+        return sheen_texture_constant(clamps ? clamped(m, value, c) : c);
+    }
     if (value->busy) {
         sheen_mi_fail(m, SHEEN_ERR_PARSE, value, "the texture refers to itself");
         return sheen_texture_constant(otherwise);
@@ -221,8 +224,8 @@ SheenTexture sheen_mi_texture_of(Mitsuba *m, SheenXml *value, Rgb otherwise)
     value->busy = true;
     SheenTexture t = read_texture(m, value);
     value->busy = false;
-    if (t.kind != SHEEN_TEXTURE_BITMAP) t.value = clamped(m, value, t.value);
-    if (sheen_texture_has_two_values(&t)) t.value2 = clamped(m, value, t.value2);
+    if (clamps && t.kind != SHEEN_TEXTURE_BITMAP) t.value = clamped(m, value, t.value);
+    if (clamps && sheen_texture_has_two_values(&t)) t.value2 = clamped(m, value, t.value2);
     return t;
 }
 
@@ -230,7 +233,7 @@ SheenTexture sheen_mi_texture(Mitsuba *m, const SheenXml *e, const char *name, R
 {
     SheenXml *c = sheen_mi_child(e, name);
     SheenXml *value = c ? sheen_mi_resolve(m, c) : NULL;
-    return value ? sheen_mi_texture_of(m, value, otherwise) : sheen_texture_constant(otherwise);
+    return value ? sheen_mi_texture_of(m, value, MITSUBA_REFLECTANCE, otherwise) : sheen_texture_constant(otherwise);
 }
 
 SheenTexture sheen_mi_factor(Mitsuba *m, const SheenXml *e, const char *name, float otherwise, float lo, float hi)
@@ -239,7 +242,7 @@ SheenTexture sheen_mi_factor(Mitsuba *m, const SheenXml *e, const char *name, fl
     SheenXml *value = c ? sheen_mi_resolve(m, c) : NULL;
     if (!value) return sheen_texture_constant(rgb_gray(otherwise));
     if (strcmp(value->tag, "float") != 0 && strcmp(value->tag, "integer") != 0)
-        return sheen_mi_texture_of(m, value, rgb_gray(otherwise));
+        return sheen_mi_texture_of(m, value, MITSUBA_REFLECTANCE, rgb_gray(otherwise));
     value->used = true;
     float x = (float)sheen_mi_float(m, e, name, (double)otherwise), good = clampf(x, lo, hi);
     if (good != x)

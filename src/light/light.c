@@ -2,6 +2,7 @@
 #include "light/light.h"
 
 #include "light/choose.h"
+#include "light/emission.h"
 #include "light/source.h"
 
 #include <stdlib.h>
@@ -11,7 +12,7 @@ struct SheenLights {
     uint32_t n;
     Source *sources; // [n], in the order of their kinds
     Chooser chooser;
-    const SheenShape *shapes;
+    const SheenScene *scene;
     uint32_t *of_light;                  // [scene->n_lights] index into sources, or SHEEN_NONE
     uint32_t environment;                // index into sources, or SHEEN_NONE
     const SheenLight *environment_light; // NULL for none
@@ -89,7 +90,7 @@ static SheenStatus build(const SheenScene *scene, SheenEnvironmentSplit split, S
 {
     l->arena = sheen_arena_create();
     if (!l->arena) return SHEEN_ERR_NOMEM;
-    l->shapes = scene->shapes;
+    l->scene = scene;
     l->environment = SHEEN_NONE;
     if (scene->environment != SHEEN_NONE) l->environment_light = &scene->lights[scene->environment];
     l->sources = SHEEN_ARENA_NEW(l->arena, Source, scene->n_lights);
@@ -149,7 +150,7 @@ bool sheen_light_is_delta(const SheenLights *lights, uint32_t light)
 
 uint32_t sheen_lights_of_shape(const SheenLights *lights, uint32_t shape)
 {
-    uint32_t light = lights->shapes[shape].light;
+    uint32_t light = lights->scene->shapes[shape].light;
     return light == SHEEN_NONE ? SHEEN_NONE : lights->of_light[light];
 }
 
@@ -170,14 +171,19 @@ float sheen_lights_choose_probability(const SheenLights *lights, Vec3 p, Vec3 n,
 
 // ---- samples ----------------------------------------------------------------------------------------------------
 
-static bool sample_area(const Source *s, Vec3 p, Vec2 u, LightSample *out)
+static bool sample_area(const SheenScene *scene, const Source *s, Vec3 p, Vec2 u, LightSample *out)
 {
     SourcePoint point;
     if (!sheen_source_sample_area(s, p, u, &point)) return false;
+    Rgb radiance = s->light->radiance;
+    if (s->light->texture) {
+        radiance = sheen_emission_at(scene, s->light, point.triangle, point.q);
+        if (rgb_is_black(radiance)) return false;
+    }
     float clearance = sheen_surface_clearance(point.q, point.n, s->radius + point.distance);
     *out = (LightSample){.wi = point.wi,
                          .target = v3_mad(point.q, clearance, point.n),
-                         .radiance = rgb_scale(s->light->radiance, point.solid_angle),
+                         .radiance = rgb_scale(radiance, point.solid_angle),
                          .pdf = 1.0f / point.solid_angle};
     return out->pdf > 0.0f && isfinite(out->pdf);
 }
@@ -223,7 +229,7 @@ bool sheen_light_sample(const SheenLights *lights, uint32_t light, Vec3 p, Vec2 
     case SOURCE_ENVIRONMENT:
         return sample_environment(&s->environment, u, out);
     default:
-        return sample_area(s, p, u, out);
+        return sample_area(lights->scene, s, p, u, out);
     }
 }
 
@@ -243,7 +249,7 @@ Rgb sheen_emitted(const SheenScene *scene, const SurfacePoint *s, Vec3 wo)
 {
     uint32_t light = scene->shapes[s->shape].light;
     if (light == SHEEN_NONE || !(v3_dot(s->ng, wo) > 0.0f)) return rgb_gray(0.0f);
-    return scene->lights[light].radiance;
+    return sheen_emission(&scene->lights[light], s->uv);
 }
 
 Rgb sheen_environment_soft(const SheenLights *lights, Vec3 wi)

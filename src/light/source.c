@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "light/source.h"
 
+#include "light/emission.h"
 #include "math/warp.h"
 
 // How far a quadrilateral may be from a rectangle, as a share of its edges.
@@ -85,7 +86,7 @@ static void mesh_bounds(Source *s)
         s->cos_cone = minf(s->cos_cone, v3_dot(s->axis, triangle_normal(mesh, i)));
     s->cos_cone = maxf(s->cos_cone - 1e-4f, -1.0f);
     // From its axis a flat light shows all its area, a convex closed one from anywhere a quarter on average.
-    s->power = rgb_mean(s->light->radiance) * (float)s->area * lerpf(0.25f, 1.0f, flat);
+    s->power = s->brightness * (float)s->area * lerpf(0.25f, 1.0f, flat);
 }
 
 static SheenStatus mesh_init(Source *s, SheenArena *arena)
@@ -136,6 +137,7 @@ static bool mesh_sample(const Source *s, Vec3 p, Vec2 u, SourcePoint *out)
     Vec3 e1 = v3_sub(v[1], v[0]), e2 = v3_sub(v[2], v[0]);
     out->q = v3_mad(v3_mad(v[0], b.x, e1), b.y, e2);
     out->n = v3_normalize(v3_cross(e1, e2));
+    out->triangle = i;
     out->solid_angle = 1.0f / (pdf * (float)(s->triangle_cdf[i + 1] - s->triangle_cdf[i]));
     return look(p, out) > 0.0f;
 }
@@ -169,6 +171,7 @@ static inline __attribute__((always_inline)) bool rectangle_point(const SheenRec
 static bool rectangle_sample(const Source *s, Vec3 p, Vec2 u, SourcePoint *out)
 {
     Vec2 st;
+    out->triangle = SHEEN_NONE;
     return rectangle_point(&s->rectangle, p, u, &st, out);
 }
 
@@ -186,7 +189,7 @@ static void disk_init(Source *s)
     Vec3 corner = v3_mad(v3_mad(disk->center, -hx, t), -hy, b);
     s->rectangle = sheen_rectangle_make(corner, v3_scale(t, 2.0f * hx), v3_scale(b, 2.0f * hy));
     s->radius = sqrtf(hx * hx + hy * hy);
-    s->power = rgb_mean(s->light->radiance) * (float)s->area;
+    s->power = s->brightness * (float)s->area;
     s->unit_x = 1.0f / a;
     s->unit_y = 1.0f / d;
     s->skew = c / d;
@@ -256,7 +259,7 @@ static void sphere_init(Source *s)
     s->center = sphere->center;
     s->radius = sphere->radius;
     s->area = 4.0 * (double)SHEEN_PI * (double)sqrf(sphere->radius);
-    s->power = rgb_mean(s->light->radiance) * 0.25f * (float)s->area;
+    s->power = s->brightness * 0.25f * (float)s->area;
 }
 
 // ---- all --------------------------------------------------------------------------------------------------------
@@ -280,9 +283,11 @@ static SheenStatus area_init(const SheenScene *scene, SheenArena *arena, Source 
 SheenStatus sheen_source_init(const SheenScene *scene, const SheenLight *light, SheenEnvironmentSplit split,
                               SheenArena *arena, Source *out)
 {
-    *out = (Source){.light = light, .power = rgb_mean(light->radiance)};
+    *out = (Source){.light = light, .brightness = rgb_mean(light->radiance)};
+    out->power = out->brightness;
     switch (light->kind) {
     case SHEEN_LIGHT_AREA:
+        out->brightness = sheen_emission_mean(scene, light);
         return area_init(scene, arena, out);
     case SHEEN_LIGHT_POINT:
     case SHEEN_LIGHT_SPOT:

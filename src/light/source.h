@@ -25,6 +25,7 @@ typedef struct Source {
     SourceKind kind;
     const SheenLight *light;
     const SheenShape *shape;  // area lights
+    float brightness;         // mean of the channels of the radiance, over an area light's surface
     Vec3 center;              // of a sphere that holds the light
     float radius;             // infinite for a light without a place
     float power;              // over squared distance, about the irradiance of a surface that faces the light; a light
@@ -46,6 +47,7 @@ typedef struct SourcePoint {
     Vec3 wi;           // unit, from p to q
     float distance;    // from p to q, metres
     float solid_angle; // one over the density of wi, sr
+    uint32_t triangle; // of a mesh, SHEEN_NONE for a rectangle
 } SourcePoint;
 
 /**

@@ -147,7 +147,7 @@ static void weigh_rest(const Source sources[], uint32_t first, uint32_t count, V
         else if (s->kind == SOURCE_ENVIRONMENT)
             w[i] = weigh_environment(&s->environment, n);
         else
-            w[i] = rgb_mean(s->light->radiance) * maxf(-v3_dot(s->light->direction, n), 0.0f);
+            w[i] = s->brightness * maxf(-v3_dot(s->light->direction, n), 0.0f);
     }
 }
 
@@ -222,13 +222,13 @@ static void set_polygon(Polygons *g, uint32_t i, const Source *s)
     for (int k = 0; k < 4; ++k) g->x[k][i] = v[k].x, g->y[k][i] = v[k].y, g->z[k][i] = v[k].z;
     g->nx[i] = n.x, g->ny[i] = n.y, g->nz[i] = n.z;
     g->area[i] = (float)area;
-    g->power[i] = rgb_mean(s->light->radiance) * (float)(s->area / area);
+    g->power[i] = s->brightness * (float)(s->area / area);
 }
 
 static void set_sphere(Spheres *g, uint32_t i, const Source *s)
 {
     const SheenSphere *sphere = &s->shape->sphere;
-    float l = rgb_mean(s->light->radiance);
+    float l = s->brightness;
     g->x[i] = sphere->center.x, g->y[i] = sphere->center.y, g->z[i] = sphere->center.z;
     g->r2[i] = sqrf(sphere->radius);
     g->outside[i] = sphere->flip ? 0.0f : l;
@@ -249,7 +249,7 @@ static void set_point(Points *g, uint32_t i, const Source *s)
 {
     Vec3 p = s->light->position;
     g->x[i] = p.x, g->y[i] = p.y, g->z[i] = p.z;
-    g->intensity[i] = rgb_mean(s->light->radiance);
+    g->intensity[i] = s->brightness;
 }
 
 static int table_of_kind(SourceKind kind)

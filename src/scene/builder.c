@@ -137,6 +137,22 @@ uint32_t sheen_builder_add_area_light(SheenBuilder *b, uint32_t shape, Rgb radia
     return s->light;
 }
 
+uint32_t sheen_builder_add_textured_area_light(SheenBuilder *b, uint32_t shape, const SheenTexture *radiance)
+{
+    SheenTexture *copy = NULL;
+    if (radiance->kind != SHEEN_TEXTURE_CONSTANT) {
+        copy = SHEEN_ARENA_NEW(b->arena, SheenTexture, 1);
+        if (!copy) {
+            b->status = SHEEN_ERR_NOMEM;
+            return SHEEN_NONE;
+        }
+        *copy = *radiance;
+    }
+    uint32_t light = sheen_builder_add_area_light(b, shape, sheen_texture_mean(radiance));
+    if (light != SHEEN_NONE) LIST_AT(b->lights, SheenLight, light)->texture = copy;
+    return light;
+}
+
 uint32_t sheen_builder_add_light(SheenBuilder *b, const SheenLight *light)
 {
     static const char *const names[] = {"an area light", "a point light", "a spot light", "a directional light",

@@ -35,6 +35,8 @@ const SheenMaterial *sheen_builder_material(const SheenBuilder *builder, uint32_
 uint32_t sheen_builder_add_shape(SheenBuilder *builder, const SheenShape *shape);
 /** Makes `shape`, in the world group, emit `radiance` from its front side. */
 uint32_t sheen_builder_add_area_light(SheenBuilder *builder, uint32_t shape, Rgb radiance);
+/** The same with a radiance that varies over the shape's uv; below zero it counts as zero. `radiance` is copied. */
+uint32_t sheen_builder_add_textured_area_light(SheenBuilder *builder, uint32_t shape, const SheenTexture *radiance);
 /** Any light but an area light. A second environment light replaces the first, with a warning. */
 uint32_t sheen_builder_add_light(SheenBuilder *builder, const SheenLight *light);
 uint32_t sheen_builder_add_camera(SheenBuilder *builder, const SheenCamera *camera);

@@ -149,12 +149,14 @@ typedef enum SheenLightKind {
 
 typedef struct SheenLight {
     SheenLightKind kind;
-    Rgb radiance;   // W m^-2 sr^-1 for area and constant environment; see the kinds; factor for an environment image
-    uint32_t shape; // area: the shape, never inside an instanced group
-    Vec3 position;  // point, spot
-    Vec3 direction; // spot: axis; directional: the way the light travels; unit
-    float cos_inner, cos_outer;   // spot: full intensity inside, zero outside
-    SheenBitmap environment;      // float latitude-longitude image; row 0 is up, +y of its own space
+    Rgb radiance; // W m^-2 sr^-1 for area and constant environment; see the kinds; factor for an environment image
+    const SheenTexture
+        *texture;               // area: the radiance over the shape's uv, of which `radiance` is then the mean; or NULL
+    uint32_t shape;             // area: the shape, never inside an instanced group
+    Vec3 position;              // point, spot
+    Vec3 direction;             // spot: axis; directional: the way the light travels; unit
+    float cos_inner, cos_outer; // spot: full intensity inside, zero outside
+    SheenBitmap environment;    // float latitude-longitude image; row 0 is up, +y of its own space
     Transform to_world, to_light; // environment image only. In its own space a direction d has
                                   // u = atan2(d.x, -d.z) / 2 pi (wrapped to [0, 1)), v = acos(d.y) / pi
 } SheenLight;

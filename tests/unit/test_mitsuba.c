@@ -489,8 +489,9 @@ static void materials_inside_others(void **state)
     kit_assert_rgb(m->absorption, rgb(0.2f, 0.4f, 6), 1e-6f);
     const SheenMaterial *bump = &k->scene->materials[m->nested[0]];
     assert_int_equal(bump->kind, SHEEN_MATERIAL_BUMP);
-    assert_float_equal(bump->map_scale, 0.5f, 0.0f);
-    assert_false(bump->shadow_normals); // version 3 only
+    assert_float_equal(bump->map_scale, 1.0f, 0.0f);
+    assert_float_equal(bump->map.value.g, 0.1f, 1e-7f); // 0.2 scaled
+    assert_false(bump->shadow_normals);                 // version 3 only
     assert_int_equal(k->n_warnings, 2);
     // A transmitting material has two sides of its own.
     m = material(k, "3.0.0", "<bsdf type=\"twosided\" id=\"m\"><bsdf type=\"roughdielectric\"/></bsdf>");
@@ -767,6 +768,23 @@ static void lights(void **state)
     assert_non_null(strstr(k->warnings, "'collimated' is not supported and is left out"));
 }
 
+static void textured_lamps(void **state)
+{
+    Kit *k = *state;
+    const SheenScene *s = kit_scene(
+        k, "<shape type=\"rectangle\"><emitter type=\"area\"><texture name=\"radiance\" type=\"checkerboard\">"
+           "<rgb name=\"color0\" value=\"4 0 0\"/><rgb name=\"color1\" value=\"0 8 0\"/></texture></emitter></shape>");
+    assert_int_equal(k->n_warnings, 1); // of the camera; radiances may be over 1
+    assert_non_null(s->lights[0].texture);
+    kit_assert_rgb(s->lights[0].radiance, rgb(2, 4, 0), 1e-6f);
+    // As in Mitsuba, (0.1, 0.1) of its uv has color0; its v runs downward.
+    kit_assert_rgb(sheen_texture_eval(s->lights[0].texture, v2(0.1f, 0.9f)), rgb(4, 0, 0), 0.0f);
+    s = kit_scene(k, "<texture type=\"checkerboard\" id=\"t\"><float name=\"color0\" value=\"0\"/><float "
+                     "name=\"color1\" value=\"0\"/></texture><shape type=\"sphere\"><emitter type=\"area\">"
+                     "<ref name=\"radiance\" id=\"t\"/></emitter></shape>");
+    assert_int_equal(s->n_lights, 0); // black
+}
+
 static void environments(void **state)
 {
     Kit *k = *state;
@@ -1027,6 +1045,7 @@ int main(void)
         KIT_TEST(pictures_are_read_once),
         KIT_TEST(byte_pictures_are_decoded),
         KIT_TEST(lights),
+        KIT_TEST(textured_lamps),
         KIT_TEST(environments),
         KIT_TEST(skies_and_suns),
         KIT_TEST(cameras),
