@@ -19,6 +19,9 @@ URLS = {"CC0": "https://creativecommons.org/publicdomain/zero/1.0/",
 OTHERS = {"mitsuba-tutorials": "[Mitsuba's tutorials](https://github.com/mitsuba-renderer/mitsuba-tutorials)",
           "mcguire-cornell-box": "Guedis Cardenas and Morgan McGuire, [CC BY 3.0](" + URLS["CC BY 3.0"] + ")"}
 
+# Why one of two files of a scene is not shown, where that is not only that the other is newer.
+BROKEN = {"mitsuba/veach-bidir/scene.xml": "most of its surfaces show the side on which they are black"}
+
 
 @dataclass
 class Scene:
@@ -72,7 +75,9 @@ def shared(taken):
         newest = [p for p in (os.path.join(folder, f) for f in ("scene_v3.xml", "scene.xml")) if os.path.exists(p)]
         if newest:
             add("mitsuba-" + name if name in taken else name, newest[0])
-            left += [f"{os.path.relpath(p, base)}: {os.path.basename(newest[0])} stands for it" for p in newest[1:]]
+        for path in newest[1:]:
+            shown = os.path.relpath(path, base)
+            left.append(f"{shown}: {BROKEN.get(shown, 'an older form')}; {os.path.basename(newest[0])} stands for it")
     for path in sorted(glob.glob(os.path.join(base, "obj", "mcguire-cornell-box", "*.obj"))):
         stem = os.path.splitext(os.path.basename(path))[0]
         if stem.startswith("CornellBox-"):

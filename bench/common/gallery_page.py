@@ -25,10 +25,10 @@ shows all pictures beside their references with a slider, the map of errors and 
   noise of the reference is taken off: the square is the product of the differences from its two independent halves.
   ± is the standard error, from the scatter over patches of 20 × 20 pixels.
 - **bias** is mean(x) / mean(r) − 1, ± with the noise of the reference and the scatter of the runs.
-- **path** is the time that `--integrator path` needs for the same relMSE, from runs of {path_spp} samples a pixel that are
-  judged in the same way: the error falls as 1 / samples, the time rises linearly. **×** is the ratio of the times, wall
-  clock / processor. “>” stands where the error is not known from zero: the bound is for its value plus two standard
-  errors.
+- **path** is the time that `--integrator path` needs for the same relMSE, from runs of {path_spp} samples a pixel that
+  are judged in the same way: the error falls as 1 / samples, the time rises linearly. **×** is the ratio of the times,
+  wall clock / processor. “>” stands where the error is not known from zero: the bound is for its value plus two
+  standard errors.
 - All pixels are averaged with a box. The small pictures are brightened by whole and half stops, each for itself.
 
 """
@@ -84,10 +84,10 @@ def row(name, entry, integrator, first):
 
 def write_references(book):
     text = ("# Converged pictures for the gallery\n\n"
-            f"By path tracing (`--integrator path --size {kept.WIDTH}x{kept.HEIGHT} --filter box`, all else default), two\n"
-            "halves of each scene with different seeds, so that their difference tells the noise. `bench/gallery\n"
-            "--references SECONDS` adds samples to them. Half floats, of which the lowest bits are rounded away: they are\n"
-            "below the noise. `references.json` holds the figures of this table; `figures.json` those of\n"
+            f"By path tracing (`--integrator path --size {kept.WIDTH}x{kept.HEIGHT} --filter box`, all else default),\n"
+            "two halves of each scene with different seeds, so that their difference tells the noise. `bench/gallery\n"
+            "--references SECONDS` adds samples to them. Half floats, of which the lowest bits are rounded away: they\n"
+            "are below the noise. `references.json` holds the figures of this table; `figures.json` those of\n"
             "[the gallery](../../docs/gallery.md).\n\n"
             "| scene | samples a pixel of each half | processor seconds of both | relMSE of the mean by its noise |\n"
             "| --- | --- | --- | --- |\n")

@@ -49,8 +49,9 @@ def cached(runs, reference):
     biases = [pictures.bias(picture, reference.mean) for _, picture in runs]
     scatter = np.std(biases, ddof=1) / np.sqrt(len(runs)) if len(runs) > 1 else 0.0
     return {"wall": short(min(run.seconds("total") for run, _ in runs)), "user": short(min(r.user for r, _ in runs)),
-            "records": runs[0][0].records, "relmse": short(errors.mean()), "relmse_error": short(error_of_mean(errors), 2),
-            "bias": short(np.mean(biases)), "bias_error": short(np.hypot(scatter, reference.mean_error), 2)}
+            "records": runs[0][0].records, "relmse": short(errors.mean()),
+            "relmse_error": short(error_of_mean(errors), 2), "bias": short(np.mean(biases)),
+            "bias_error": short(np.hypot(scatter, reference.mean_error), 2)}
 
 
 def line(points):
@@ -62,8 +63,8 @@ def line(points):
 
 
 def path(runs, reference):
-    """What path tracing costs: runs are (samples, run, picture). `one` is the error of one sample a pixel, from all runs,
-    each weighed by its samples."""
+    """What path tracing costs: runs are (samples, run, picture). `one` is the error of one sample a pixel, from all
+    runs, each weighed by its samples."""
     errors = [(spp, float(reference.relmse(picture).mean())) for spp, _, picture in runs]
     one = sum(spp * spp * error for spp, error in errors) / sum(spp for spp, _ in errors)
     return {"one": short(one), "wall": line([(spp, run.seconds("total")) for spp, run, _ in runs]),

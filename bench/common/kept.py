@@ -52,7 +52,7 @@ def one_pass(scene, spp, seed):
     """A picture of new samples, and its processor seconds."""
     path = os.path.join(running.folder("references"), f"gallery-{os.getpid()}.pfm")
     run = running.render(scene.path, path, integrator="path", size=f"{WIDTH}x{HEIGHT}", spp=spp, seed=seed, threads=1,
-                         filter=running.box_filter())
+                         filter="box")
     picture = pictures.read_pfm(path)
     os.remove(path)
     return picture, run.user

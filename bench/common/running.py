@@ -92,12 +92,6 @@ def render(scene, picture, **options):
     return run
 
 
-def box_filter():
-    """What --filter is to be where the program has it: judged pictures are means over pixels, whatever a scene asks."""
-    listing = subprocess.run([SHEEN, "render", "--help"], capture_output=True, text=True, check=True).stdout
-    return "box" if "--filter" in listing else None
-
-
 def machine():
     """One line about where and in what company the figures were measured."""
     model = "unknown processor"
