@@ -9,7 +9,7 @@
 // the whole fill.) The first table has the rays per second up to the end of each step:
 //
 //     gather rays   sheen_accel_intersect_many on the recorded rays of the gathers, nothing else
-//     shadow rays   sheen_accel_occluded_many on their recorded shadow rays, nothing else
+//     shadow rays   sheen_accel_transmittance_many on their recorded shadow rays, nothing else
 //     trace         + directions, surfaces, BSDFs
 //     + direct      + choice of lights, light samples, shadow rays
 //     + estimate    + irradiance and gradients
@@ -235,9 +235,9 @@ static double bare_shadow(Bench *b, size_t i)
     DirectScratch *d = &b->h.direct;
     memcpy(d->rays, b->recorded[i].shadow, n * sizeof *d->rays);
     double start = seconds();
-    sheen_accel_occluded_many(b->accel, SHEEN_INCOHERENT, n, d->rays, d->occluded);
+    sheen_accel_transmittance_many(b->accel, n, d->rays, d->transmittance);
     double end = seconds();
-    if (n > 0) keep(&b->sum, (double)d->occluded[0]);
+    if (n > 0) keep(&b->sum, (double)d->transmittance[0]);
     return end - start;
 }
 

@@ -11,8 +11,8 @@ bool sheen_direct_reserve(DirectScratch *s, size_t n)
     sheen_direct_free(s);
     s->rays = malloc(n * sizeof *s->rays);
     s->irradiance = malloc(n * sizeof *s->irradiance);
-    s->occluded = malloc(n);
-    if (!s->rays || !s->irradiance || !s->occluded) {
+    s->transmittance = malloc(n * sizeof *s->transmittance);
+    if (!s->rays || !s->irradiance || !s->transmittance) {
         sheen_direct_free(s);
         return false;
     }
@@ -24,7 +24,7 @@ void sheen_direct_free(DirectScratch *s)
 {
     free(s->rays);
     free(s->irradiance);
-    free(s->occluded);
+    free(s->transmittance);
     *s = (DirectScratch){0};
 }
 
@@ -55,9 +55,11 @@ uint64_t sheen_direct_add(const SheenWork *work, size_t n, const DiffusePoint po
         else
             scratch->rays[i] = (Ray){points[i].p, -1.0f, points[i].n}; // skipped
     }
-    sheen_accel_occluded_many(work->accel, SHEEN_INCOHERENT, n, scratch->rays, scratch->occluded);
-    for (size_t i = 0; i < n; ++i)
-        if (!scratch->occluded[i]) E[i] = rgb_mad(E[i], scale, scratch->irradiance[i]);
+    sheen_accel_transmittance_many(work->accel, n, scratch->rays, scratch->transmittance);
+    for (size_t i = 0; i < n; ++i) {
+        float through = scratch->transmittance[i];
+        if (through > 0.0f) E[i] = rgb_mad(E[i], scale * through, scratch->irradiance[i]);
+    }
     return rays;
 }
 

@@ -35,9 +35,9 @@ static inline LightNumbers sheen_light_numbers(uint32_t key, uint32_t index, uin
 
 /** Buffers of one worker. */
 typedef struct DirectScratch {
-    Ray *rays;               // [capacity]
-    Rgb *irradiance;         // [capacity]
-    unsigned char *occluded; // [capacity]
+    Ray *rays;            // [capacity]
+    Rgb *irradiance;      // [capacity]
+    float *transmittance; // [capacity]
     size_t capacity;
 } DirectScratch;
 

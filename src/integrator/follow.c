@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrator/follow.h"
 
+#include "scene/passage.h"
+
 bool sheen_set_point(const SurfacePoint *s, bool front, Rgb reflectance, DiffusePoint *out)
 {
     Vec3 ng = front ? s->ng : v3_neg(s->ng), n = front ? s->ns : v3_neg(s->ns);
@@ -44,6 +46,11 @@ SheenStep sheen_step(const SurfacePoint *s, const Bsdf *bsdf, Vec3 wo, SheenSamp
     Vec2 u = sheen_bsdf_is_delta(bsdf) ? v2(0.5f, 0.5f) : sampler_2d(sampler);
     if (!sheen_bsdf_sample(bsdf, sheen_seen_from(s, &frame, wo), lobe, u, &sample)) return SHEEN_STEP_ENDS;
     if (!rgb_finite(sample.weight) || rgb_is_black(sample.weight)) return SHEEN_STEP_ENDS;
+    if (sample.passage) {
+        *throughput = rgb_mul(*throughput, sample.weight);
+        *next = sheen_surface_ray(s, v3_neg(wo));
+        return SHEEN_STEP_PASSES;
+    }
     if (!goes_on(&sample)) {
         bool front = (v3_dot(wo, s->ng) >= 0.0f) != sample.transmit;
         return sheen_set_point(s, front, sample.weight, point) ? SHEEN_STEP_SCATTERS : SHEEN_STEP_ENDS;
@@ -80,9 +87,14 @@ void sheen_follow(const SheenWork *work, const Ray *ray, const Hit *hit, SheenSa
         }
         Bsdf bsdf;
         sheen_bsdf_look_up(work->scene, &s, &bsdf);
+        Rgb found = out->specular > 0 ? rgb_mul(out->throughput, out->emitted) : rgb_gray(0.0f);
         SheenStep step = sheen_step(&s, &bsdf, wo, sampler, &out->throughput, &next, &out->point);
         out->scatters = step == SHEEN_STEP_SCATTERS;
-        if (step != SHEEN_STEP_GOES_ON || out->specular++ == SHEEN_SPECULAR_MAX) return;
+        if (step == SHEEN_STEP_SCATTERS || step == SHEEN_STEP_ENDS) return;
+        out->passed = rgb_add(out->passed, found);
+        out->emitted = rgb_gray(0.0f);
+        if (step == SHEEN_STEP_PASSES ? out->passages++ == SHEEN_PASSAGES_MAX : out->specular++ == SHEEN_SPECULAR_MAX)
+            return;
         sheen_accel_intersect(work->accel, &next, &next_hit);
         ray = &next;
         hit = &next_hit;

@@ -34,7 +34,8 @@ bool sheen_lambertian_point(const SheenMaterial *material, const SurfacePoint *s
 /** What becomes of a ray at a surface. */
 typedef enum SheenStep {
     SHEEN_STEP_ENDS,    // absorbed
-    SHEEN_STEP_GOES_ON, // through a mirror, a pane, a hole, or along a narrow glossy reflection
+    SHEEN_STEP_PASSES,  // straight through a hole: light samples do so too, so that nothing has happened
+    SHEEN_STEP_GOES_ON, // through a mirror, a pane, or along a narrow glossy reflection
     SHEEN_STEP_SCATTERS // at a point that counts as diffuse
 } SheenStep;
 
@@ -45,7 +46,7 @@ typedef enum SheenStep {
  * would make caustics; its reflectance is one sample's weight, whose mean is the albedo for wo. Light that comes
  * through from behind makes it a surface of the other side.
  * @param wo          unit, toward the viewer
- * @param throughput  is multiplied where the ray goes on
+ * @param throughput  is multiplied where the ray passes or goes on
  */
 SheenStep sheen_step(const SurfacePoint *s, const Bsdf *bsdf, Vec3 wo, SheenSampler *sampler, Rgb *throughput,
                      Ray *next, DiffusePoint *point);
@@ -58,10 +59,12 @@ typedef struct Followed {
     bool scatters;     // `point` is set
     bool escaped;      // left the scene along `direction`
     unsigned specular; // mirrors and panes on the way
+    unsigned passages; // holes
     DiffusePoint point;
     Vec3 direction; // of the last segment
     Rgb throughput; // of the mirrors and panes
     Rgb emitted;    // radiance that the last surface emits back along the last segment
+    Rgb passed;     // that of surfaces before it, from behind the first mirror on, times the throughput
     float distance; // length of the whole way, metres; INFINITY when escaped
 } Followed;
 

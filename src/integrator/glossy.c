@@ -40,8 +40,9 @@ static Rgb light_sample(const SheenWork *work, const SeenSurface *v, LightNumber
     if (rgb_is_black(f)) return f;
     Ray shadow = sheen_shadow_ray(&v->s, &ls);
     ++stats->rays_shadow;
-    if (sheen_accel_occluded(work->accel, &shadow)) return rgb_gray(0.0f);
-    return rgb_scale(rgb_mul(f, ls.radiance), 1.0f / (choice * (float)samples));
+    float through = sheen_accel_transmittance(work->accel, &shadow);
+    if (through == 0.0f) return rgb_gray(0.0f);
+    return rgb_scale(rgb_mul(f, ls.radiance), through / (choice * (float)samples));
 }
 
 Rgb sheen_glossy_lit(const SheenWork *work, const SeenSurface *v, uint32_t branch, uint32_t pixel, uint32_t sample,

@@ -3,6 +3,7 @@
 
 #include "integrator/mis.h"
 #include "material/bsdf.h"
+#include "scene/passage.h"
 
 // After so many scatterings, not at delta lobes, a path of small throughput is ended by chance. Earlier ends would cost
 // more noise than time; chains of delta lobes are short, and without roulette exact.
@@ -15,15 +16,18 @@ static const float ROULETTE_MAX_SURVIVAL = 0.99f;
 // each vertex, whatever happened at the ones before.
 enum { DIM_LIGHT = 0, DIM_LIGHT_UV = 1, DIM_LOBE = 3, DIM_BSDF_UV = 4, DIM_ROULETTE = 6, DIMS_PER_VERTEX = 7 };
 
-// The path so far, up to the ray that is to find the next vertex.
+// The path so far, up to the ray that is to find the next vertex. A passage through a hole is no scattering: the ray
+// goes on with all that is known of how it was drawn, since the light samples of the vertex that it left pass the hole
+// too.
 typedef struct Path {
     const SheenWork *work;
     SheenStats *stats;
     SheenSampler sampler;
     Ray ray;
     Rgb throughput;
-    uint32_t vertices;    // scatterings of all kinds
+    uint32_t vertices;    // scatterings of all kinds, and passages
     uint32_t scatterings; // those that are not at delta lobes
+    uint32_t passages;
     // How the ray was drawn, for weighing the light that it finds against light samples of the same vertex.
     bool competes;          // false for camera rays and after delta lobes: no light sample could have found it
     float pdf;              // 1/sr
@@ -41,6 +45,7 @@ typedef struct Vertex {
     Vec3 wo, wo_l;
     Vec3 side;       // geometric normal on the side of wo
     bool both_sides; // light from the other side is scattered too
+    uint32_t light_samples;
 } Vertex;
 
 static void draw_from(Path *path, uint32_t dim)
@@ -113,8 +118,9 @@ static Rgb light_sample(const Path *path, const Vertex *v, uint32_t n_samples, f
     if (rgb_is_black(f_cos)) return f_cos;
     Ray shadow = sheen_shadow_ray(&v->s, &ls);
     ++path->stats->rays_shadow;
-    if (sheen_accel_occluded(work->accel, &shadow)) return rgb_gray(0.0f);
-    float weight = 1.0f / (choice * (float)n_samples);
+    float through = sheen_accel_transmittance(work->accel, &shadow);
+    if (through == 0.0f) return rgb_gray(0.0f);
+    float weight = through / (choice * (float)n_samples);
     if (!ls.delta)
         weight *= power_heuristic((float)n_samples * choice * ls.pdf, sheen_bsdf_pdf(&v->bsdf, v->wo_l, wi_l));
     return rgb_scale(rgb_mul(f_cos, ls.radiance), weight);
@@ -124,7 +130,7 @@ static Rgb light_sample(const Path *path, const Vertex *v, uint32_t n_samples, f
 static void add_light_samples(Path *path, const Vertex *v)
 {
     if (sheen_lights_count(path->work->lights) == 0) return;
-    uint32_t n = path->light_samples;
+    uint32_t n = v->light_samples;
     Rgb L = rgb_gray(0.0f);
     for (uint32_t i = 0; i < n; ++i) {
         SheenSampler sampler = path->sampler;
@@ -136,6 +142,38 @@ static void add_light_samples(Path *path, const Vertex *v)
     add_light(path, path->scatterings + 1, L);
 }
 
+// Ends paths that carry little. @return false when this one ends.
+static bool survive_roulette(Path *path)
+{
+    if (path->scatterings < ROULETTE_FIRST_SCATTERING || !path->competes) return true;
+    draw_from(path, DIM_ROULETTE);
+    float q = minf(rgb_max(path->throughput), ROULETTE_MAX_SURVIVAL);
+    if (!(sampler_1d(&path->sampler) < q)) return false;
+    path->throughput = rgb_scale(path->throughput, 1.0f / q);
+    return true;
+}
+
+// Sends the ray straight on. @return false when the path ends here.
+static bool pass(Path *path, const SurfacePoint *s, Rgb weight)
+{
+    if (path->passages == SHEEN_PASSAGES_MAX) return false;
+    path->throughput = rgb_mul(path->throughput, weight);
+    path->ray = sheen_surface_ray(s, path->ray.d);
+    ++path->passages;
+    ++path->vertices;
+    ++path->stats->rays_specular;
+    return true;
+}
+
+// What a surface lets pass that scatters nothing, since its shading normal denies the side from which it is seen.
+static bool pass_unseen(Path *path, const SurfacePoint *s)
+{
+    const SheenScene *scene = path->work->scene;
+    bool front = v3_dot(path->ray.d, s->ng) <= 0.0f;
+    float passage = sheen_material_passage(scene->materials, scene->shapes[s->shape].material, s->uv, front);
+    return passage > 0.0f && pass(path, s, rgb_gray(passage));
+}
+
 // Draws the ray that leaves the vertex. @return false when the path ends here.
 static bool scatter(Path *path, const Vertex *v)
 {
@@ -143,10 +181,11 @@ static bool scatter(Path *path, const Vertex *v)
     float u_lobe = sampler_1d(&path->sampler);
     BsdfSample bs;
     if (!sheen_bsdf_sample(&v->bsdf, v->wo_l, u_lobe, sampler_2d(&path->sampler), &bs)) return false;
+    if (bs.passage) return pass(path, &v->s, bs.weight);
     Vec3 wi = frame_to_world(&v->frame, bs.wi_l);
     if (!(bs.wi_l.z * v3_dot(wi, v->s.ng) > 0.0f)) return false;
     if (bs.delta) {
-        if (path->vertices - path->scatterings >= SHEEN_PATH_MAX_DELTA) return false;
+        if (path->vertices - path->scatterings - path->passages >= SHEEN_PATH_MAX_DELTA) return false;
         ++path->stats->rays_specular;
     } else {
         if (path->scatterings > path->work->options.bounces) return false;
@@ -160,19 +199,9 @@ static bool scatter(Path *path, const Vertex *v)
     path->p = v->s.p;
     path->n = v->side;
     path->both_sides = v->both_sides;
+    path->light_samples = v->light_samples;
     ++path->vertices;
-    return true;
-}
-
-// Ends paths that carry little. @return false when this one ends.
-static bool survive_roulette(Path *path)
-{
-    if (path->scatterings < ROULETTE_FIRST_SCATTERING || !path->competes) return true;
-    draw_from(path, DIM_ROULETTE);
-    float q = minf(rgb_max(path->throughput), ROULETTE_MAX_SURVIVAL);
-    if (!(sampler_1d(&path->sampler) < q)) return false;
-    path->throughput = rgb_scale(path->throughput, 1.0f / q);
-    return true;
+    return survive_roulette(path);
 }
 
 PathRadiance sheen_path_trace(const SheenWork *work, const Ray *ray, const Hit *hit, SheenSampler sampler,
@@ -190,11 +219,15 @@ PathRadiance sheen_path_trace(const SheenWork *work, const Ray *ray, const Hit *
         Vertex v;
         sheen_surface_from_hit(work->scene, &path.ray, &next, &s);
         add_emitted(&path, &s, v3_neg(path.ray.d));
-        if (!make_vertex(&path, &s, &v)) break;
-        path.light_samples = path.scatterings == 0 ? first_light_samples : 1;
-        // After the last scattering only delta lobes are followed, to the emitter that may be behind them.
-        if (path.scatterings <= work->options.bounces && !sheen_bsdf_is_delta(&v.bsdf)) add_light_samples(&path, &v);
-        if (!scatter(&path, &v) || !survive_roulette(&path)) break;
+        if (make_vertex(&path, &s, &v)) {
+            v.light_samples = path.scatterings == 0 ? first_light_samples : 1;
+            // After the last scattering only delta lobes are followed, to the emitter that may be behind them.
+            bool lit = path.scatterings <= work->options.bounces && !sheen_bsdf_is_delta(&v.bsdf);
+            if (lit) add_light_samples(&path, &v);
+            if (!scatter(&path, &v)) break;
+        } else if (!pass_unseen(&path, &s)) {
+            break;
+        }
         sheen_accel_intersect(work->accel, &path.ray, &next);
     }
     return path.sum;

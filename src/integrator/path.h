@@ -6,7 +6,8 @@
 #include "integrator/work.h"
 #include "math/sampler.h"
 
-/** Scatterings at delta lobes (mirrors, glass) that one path follows at most; they do not count as bounces. */
+/** Scatterings at delta lobes (mirrors, glass) that one path follows at most; they do not count as bounces. Passage
+ *  through holes is none of them, see SHEEN_PASSAGES_MAX. */
 enum { SHEEN_PATH_MAX_DELTA = 64 };
 
 /** Dimensions of a sample that are left to the caller, for the place in the pixel: sheen_path_trace starts after them.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrator/visibility.h"
 
+#include "scene/passage.h"
+
 #include <stdlib.h>
 
 enum { SPLIT_DEPTH = 3 };
@@ -126,13 +128,29 @@ static bool send(const EyeRay *r, const Ray *ray, Rgb weight, uint32_t i, EyeRay
     return push_ray(v, list, next);
 }
 
+// Sends a ray straight on through a hole. Nothing has happened to it, and light that it finds weighs as before.
+static bool pass(const EyeRay *r, const SurfacePoint *s, Rgb weight, int list, Visibility *v)
+{
+    EyeRay next = *r;
+    next.throughput = rgb_mul(r->throughput, weight);
+    if (r->passages == SHEEN_PASSAGES_MAX || !(rgb_max(next.throughput) > throughput_min)) return true;
+    next.ray = sheen_surface_ray(s, r->ray.d);
+    next.branch ^= hash_u32(++next.passages);
+    return push_ray(v, list, &next);
+}
+
 // Sends a ray on along its delta lobes.
 static bool split(const EyeRay *r, const SeenSurface *s, int list, Visibility *v)
 {
     BsdfSample lobes[SHEEN_BSDF_MAX_DELTA];
     int n = sheen_bsdf_delta_lobes(&s->bsdf, s->wo_l, lobes);
     for (int i = 0; i < n; ++i) {
+        if (lobes[i].passage) {
+            if (!pass(r, &s->s, lobes[i].weight, list, v)) return false;
+            continue;
+        }
         EyeRay next = *r;
+        next.competes = false;
         Ray ray = sheen_surface_ray(&s->s, frame_to_world(&s->frame, lobes[i].wi_l));
         if (!send(r, &ray, lobes[i].weight, (uint32_t)i, &next, list, v)) return false;
     }
@@ -238,9 +256,8 @@ static bool arrive(const SheenWork *work, const SheenEye *eye, EyeRay *r, const 
     if (film) {
         Rgb emitted = found(work, r, s);
         if (!rgb_is_black(emitted)) add_light(work, r, emitted, weight, film, stats);
-        if (r->depth == 0) add_first_hit(work, r, hit, s, weight, film);
+        if (r->depth == 0 && r->passages == 0) add_first_hit(work, r, hit, s, weight, film);
     }
-    r->competes = false;
     bool last = r->gathered && work->options.bounces == 0; // no light comes from another scattering
     DiffusePoint point;
     const SheenMaterial *lambertian = sheen_lambertian(work->scene, s);
@@ -253,6 +270,8 @@ static bool arrive(const SheenWork *work, const SheenEye *eye, EyeRay *r, const 
     Rgb through = rgb_gray(1.0f);
     SheenStep step = sheen_step(s, &seen.bsdf, wo, &sampler, &through, &ray, &point);
     if (step == SHEEN_STEP_SCATTERS) return last || add_point(r, &point, false, v);
+    if (step == SHEEN_STEP_PASSES) return pass(r, s, through, list, v);
+    next.competes = false;
     if (step == SHEEN_STEP_ENDS || r->depth >= SHEEN_SPECULAR_MAX) return true;
     return send(r, &ray, through, 0, &next, list, v);
 }

@@ -36,8 +36,9 @@ typedef struct EyeRay {
     float blur, blurred; // by glossy reflections: what a pixel grows by a metre, and has grown
     float footprint;     // side of a pixel's square where the ray arrived, metres
     uint32_t pixel, sample, branch, depth;
-    bool gathered; // went along a glossy reflection
-    bool competes; // the last of its way did, from `origin`
+    uint32_t passages; // through holes, which do not count as depth
+    bool gathered;     // went along a glossy reflection
+    bool competes;     // the last of its way but passages did, from `origin`
     GlossyOrigin origin;
 } EyeRay;
 
@@ -57,8 +58,9 @@ void sheen_visibility_free(Visibility *v);
 
 /**
  * Traces samples [first, first + n) of each pixel of a tile. v->points then holds what they see, sample by sample.
- * At glass and below coats all ways are followed three times, after that one of them is chosen. Of a glossy
- * reflection one ray is followed; behind it, as behind three branchings, surfaces are what sheen_step makes of them.
+ * At masks what passes and what does not are both followed, at glass and below coats all ways three times, after that
+ * one of them is chosen. Of a glossy reflection one ray is followed; behind it, as behind three branchings, surfaces
+ * are what sheen_step makes of them.
  * @param film  emitted light, the sky and what light samples find on surfaces that are not Lambert's alone are added
  *              to the colour, weighted by 1 / spp, and first hits to the layers; NULL to find the points only
  * @return false when out of memory

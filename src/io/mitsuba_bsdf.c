@@ -125,18 +125,21 @@ static void read_thin_dielectric(Mitsuba *m, SheenXml *e, SheenMaterial *out)
     out->kind = SHEEN_MATERIAL_THIN_DIELECTRIC;
 }
 
-/** Passage without any change: a pane of the index of its surroundings. */
+/** Passage without any change: a mask that is all hole. */
 static void read_null(Mitsuba *m, SheenXml *e, SheenMaterial *out)
 {
-    (void)m, (void)e;
-    out->kind = SHEEN_MATERIAL_THIN_DIELECTRIC;
-    out->ior = 1.0f;
+    (void)e;
+    out->kind = SHEEN_MATERIAL_MASK;
+    out->weight = sheen_texture_constant(rgb_gray(0.0f));
+    out->nested[0] = sheen_mi_material(m, NULL);
 }
 
-/** What polarization leaves of light that is not polarized: half goes through a polarizer, all through a retarder. */
+/** What polarization leaves of light that is not polarized: half goes through a polarizer, all through a retarder; each
+ *  is a pane of the index of its surroundings. */
 static void read_passage(Mitsuba *m, SheenXml *e, SheenMaterial *out, float share)
 {
-    read_null(m, e, out);
+    out->kind = SHEEN_MATERIAL_THIN_DIELECTRIC;
+    out->ior = 1.0f;
     out->specular_transmittance = sheen_mi_texture(m, e, "transmittance", rgb_gray(1.0f));
     sheen_texture_scale(&out->specular_transmittance, rgb_gray(share));
 }

@@ -65,6 +65,15 @@ static float lobe_roughness(const BsdfLobe *lobe)
     }
 }
 
+// Whether shadow rays pass the lobe's hole as well. Maps and coatings around a hole turn or weaken what passes.
+static bool is_passage(const BsdfLobe *lobe, const BsdfWay *way)
+{
+    if (lobe->ops != &sheen_lobe_passage) return false;
+    for (int i = 0; i < way->n; ++i)
+        if (way->wraps[i]->kind == SHEEN_WRAP_FRAME || way->wraps[i]->kind == SHEEN_WRAP_COAT) return false;
+    return true;
+}
+
 // The weight is that of the lobe alone, its share included.
 static bool sample_lobe(const Bsdf *bsdf, const BsdfLobe *lobe, Vec3 wo, float choice, Vec2 u, BsdfSample *out)
 {
@@ -83,6 +92,7 @@ static bool sample_lobe(const Bsdf *bsdf, const BsdfLobe *lobe, Vec3 wo, float c
     if (!sheen_bsdf_way_out(&way, out)) return false;
     out->weight = rgb_scale(out->weight, lobe->weight);
     out->transmit = out->wi_l.z * wo.z < 0.0f;
+    out->passage = is_passage(lobe, &way);
     out->roughness = lobe_roughness(lobe);
     out->layer = lobe->ops->layer;
     return true;
@@ -191,7 +201,7 @@ bool sheen_bsdf_sample_of(const Bsdf *bsdf, unsigned classes, Vec3 wo_l, float l
 static int add_delta(const BsdfSample *d, int n, BsdfSample out[])
 {
     for (int i = 0; i < n; ++i)
-        if (v3_dot(d->wi_l, out[i].wi_l) > 1.0f - 1e-6f) {
+        if (v3_dot(d->wi_l, out[i].wi_l) > 1.0f - 1e-6f && d->passage == out[i].passage) {
             out[i].weight = rgb_add(out[i].weight, d->weight);
             return n;
         }
@@ -213,6 +223,7 @@ int sheen_bsdf_delta_lobes(const Bsdf *bsdf, Vec3 wo_l, BsdfSample out[SHEEN_BSD
             if (!sheen_bsdf_way_out(&way, &deltas[k])) continue;
             deltas[k].weight = rgb_scale(deltas[k].weight, lobe->weight);
             deltas[k].transmit = deltas[k].wi_l.z * wo_l.z < 0.0f;
+            deltas[k].passage = is_passage(lobe, &way);
             n = add_delta(&deltas[k], n, out);
         }
     }

@@ -69,6 +69,8 @@ typedef struct BsdfSample {
     float pdf;     // solid angle density, 1/sr; for a delta lobe the probability of choosing it
     bool delta;    // a mirror or refraction: eval and pdf do not see it
     bool transmit; // wi_l is on the other side than wo_l
+    bool passage;  // a delta lobe that goes straight on as if there was no surface: shadow rays do as well, so that it
+                   // is no scattering; its factor is sheen_material_passage
     // Of the lobe that was drawn, by sheen_bsdf_sample_of alone:
     float roughness; // alpha, of two axes the mean; 0 for a delta lobe, 1 for a diffuse one
     bool layer;      // it only ever lies upon something else: a coat, a highlight
@@ -116,7 +118,7 @@ static inline bool sheen_bsdf_sample(const Bsdf *bsdf, Vec3 wo_l, float lobe, Ve
 
 /**
  * The delta lobes, all of them, for a deterministic split, each with pdf 1 and its factor as weight. Those in the same
- * direction are one.
+ * direction are one, but passage stands alone.
  * @return their number; 0 for a BSDF without delta lobes or when all is absorbed
  */
 int sheen_bsdf_delta_lobes(const Bsdf *bsdf, Vec3 wo_l, BsdfSample out[SHEEN_BSDF_MAX_DELTA]);
@@ -150,7 +152,9 @@ float sheen_bsdf_roughness(const Bsdf *bsdf);
  */
 void sheen_bsdf_roughen(Bsdf *bsdf, float least_alpha);
 
-/** @return false when nothing of a material, anywhere, is a mirror, glass, or metal, rough or not, or lets light pass.
+/**
+ * @return false when nothing of a material, anywhere, is a mirror, glass, or metal, rough or not: what shows lamps that
+ *         light samples do not find. Passage does not: they do.
  */
 bool sheen_material_may_be_delta(const SheenScene *scene, uint32_t material);
 

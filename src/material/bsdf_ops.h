@@ -29,8 +29,8 @@ typedef struct BsdfOps {
 
 extern const BsdfOps sheen_lobe_lambert, sheen_lobe_coated_lambert, sheen_lobe_rough_diffuse,
     sheen_lobe_diffuse_transmit; // diffuse surfaces
-extern const BsdfOps sheen_lobe_conductor, sheen_lobe_dielectric, sheen_lobe_thin_dielectric,
-    sheen_lobe_coat;                                                                                 // delta lobes
+extern const BsdfOps sheen_lobe_conductor, sheen_lobe_dielectric, sheen_lobe_thin_dielectric, sheen_lobe_coat,
+    sheen_lobe_passage;                                                                              // delta lobes
 extern const BsdfOps sheen_lobe_rough_conductor, sheen_lobe_rough_dielectric, sheen_lobe_rough_coat; // microfacets
 extern const BsdfOps sheen_lobe_phong, sheen_lobe_ward;                                              // empirical
 extern const BsdfOps sheen_lobe_principled_diffuse, sheen_lobe_principled_specular, sheen_lobe_principled_clearcoat;

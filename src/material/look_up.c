@@ -270,9 +270,7 @@ static void add_mask(Place *p, const Inside *in, const SheenMaterial *m)
     float opacity = unit_at(p, &m->weight);
     add_nested(p, in, m, 0, opacity);
     if (opacity == 1.0f) return;
-    BsdfLobe *passage = add_lobe(p, in, &sheen_lobe_thin_dielectric, m);
-    passage->transmittance = rgb_gray(1.0f);
-    passage->weight *= 1.0f - opacity;
+    add_lobe(p, in, &sheen_lobe_passage, m)->weight *= 1.0f - opacity;
 }
 
 static void add_coating(Place *p, const Inside *in, const SheenMaterial *m)

@@ -5,8 +5,6 @@
 // The series R + T R T + T R^3 T + ... of a pane that absorbs nothing, T = 1 - R, sums to 2 R / (1 + R).
 static float pane_reflectance(const BsdfLobe *b, Vec3 wo)
 {
-    // A mask's lobe is straight passage; its material is the mask, which has no index.
-    if (b->material->kind != SHEEN_MATERIAL_THIN_DIELECTRIC) return 0.0f;
     float cos_t, r = sheen_fresnel_dielectric(fabsf(wo.z), b->material->ior, &cos_t);
     return 2.0f * r / (1.0f + r);
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ray/accel.h"
 
+#include "ray/holes.h"
 #include "ray/quadric.h"
 
-#include <embree3/rtcore.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -12,17 +12,23 @@ struct SheenAccel {
     RTCScene world;
     RTCScene *groups; // [n_groups]; groups[0] is NULL, the world is `world`
     uint32_t n_groups;
-    uint32_t n_shapes; // Embree's geometry number of instance i is n_shapes + i
+    uint32_t n_shapes;   // Embree's geometry number of instance i is n_shapes + i
+    TracedShape *shapes; // [n_shapes] user data of the geometries
+    bool pierced;        // some of them lets light pass
 };
 
-static RTCGeometry mesh_geometry(RTCDevice device, const SheenMesh *mesh)
+// Only meshes that need filters have them: the others cost nothing.
+static RTCGeometry mesh_geometry(RTCDevice device, TracedShape *shape)
 {
+    const SheenMesh *mesh = &shape->shape->mesh;
     RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     if (!g) return NULL;
     rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh->p, 0, sizeof(Vec3),
                                mesh->n_vertices);
     rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh->triangles, 0, 3 * sizeof(uint32_t),
                                mesh->n_triangles);
+    rtcSetGeometryUserData(g, shape);
+    if (shape->pierced) sheen_holes_filter(g);
     rtcCommitGeometry(g);
     return g;
 }
@@ -33,16 +39,18 @@ static void attach(RTCScene rtc, RTCGeometry g, uint32_t id)
     rtcReleaseGeometry(g);
 }
 
-static RTCScene group_create(RTCDevice device, const SheenScene *scene, const SheenGroup *group)
+// Without spatial splits, which RTC_BUILD_QUALITY_HIGH would make: a primitive is then in one leaf, and its filter is
+// called once for a ray.
+static RTCScene group_create(const SheenAccel *a, const SheenGroup *group)
 {
-    RTCScene rtc = rtcNewScene(device);
+    RTCScene rtc = rtcNewScene(a->device);
     if (!rtc) return NULL;
     rtcSetSceneFlags(rtc, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(rtc, RTC_BUILD_QUALITY_MEDIUM);
     for (uint32_t i = group->first_shape; i < group->first_shape + group->n_shapes; ++i) {
-        const SheenShape *shape = &scene->shapes[i];
-        RTCGeometry g = shape->kind == SHEEN_SHAPE_MESH ? mesh_geometry(device, &shape->mesh)
-                                                        : sheen_quadric_geometry(device, shape);
+        TracedShape *shape = &a->shapes[i];
+        RTCGeometry g = shape->shape->kind == SHEEN_SHAPE_MESH ? mesh_geometry(a->device, shape)
+                                                               : sheen_quadric_geometry(a->device, shape);
         if (g) attach(rtc, g, i);
     }
     return rtc;
@@ -70,17 +78,22 @@ SheenStatus sheen_accel_create(const SheenScene *scene, SheenPool *pool, const S
     snprintf(config, sizeof config, "threads=%u,set_affinity=0", sheen_pool_size(pool));
     a->device = rtcNewDevice(config);
     a->groups = calloc(scene->n_groups, sizeof(RTCScene));
-    if (!a->device || !a->groups) {
+    a->shapes = calloc((size_t)scene->n_shapes + 1, sizeof *a->shapes);
+    if (!a->device || !a->groups || !a->shapes) {
         sheen_accel_destroy(&a);
         return sheen_fail(log, SHEEN_ERR_NOMEM, "%s: the ray tracing library does not start", scene->name);
     }
     a->n_groups = scene->n_groups;
     a->n_shapes = scene->n_shapes;
+    for (uint32_t i = 0; i < scene->n_shapes; ++i) {
+        a->shapes[i] = sheen_traced_shape(scene, &scene->shapes[i]);
+        a->pierced = a->pierced || a->shapes[i].pierced;
+    }
     for (uint32_t i = 1; i < scene->n_groups; ++i) {
-        a->groups[i] = group_create(a->device, scene, &scene->groups[i]);
+        a->groups[i] = group_create(a, &scene->groups[i]);
         if (a->groups[i]) rtcCommitScene(a->groups[i]);
     }
-    a->world = group_create(a->device, scene, &scene->groups[0]);
+    a->world = group_create(a, &scene->groups[0]);
     if (a->world) {
         for (uint32_t i = 0; i < scene->n_instances; ++i) attach_instance(a, &scene->instances[i], scene->n_shapes + i);
         rtcCommitScene(a->world);
@@ -102,6 +115,7 @@ void sheen_accel_destroy(SheenAccel **accel)
         if (a->groups[i]) rtcReleaseScene(a->groups[i]);
     if (a->device) rtcReleaseDevice(a->device);
     free(a->groups);
+    free(a->shapes);
     free(a);
     *accel = NULL;
 }
@@ -138,13 +152,15 @@ void sheen_accel_intersect(const SheenAccel *a, const Ray *ray, Hit *hit)
     *hit = hit_of(a, rh.ray.tfar, rh.hit.u, rh.hit.v, rh.hit.geomID, rh.hit.primID, rh.hit.instID[0]);
 }
 
-bool sheen_accel_occluded(const SheenAccel *a, const Ray *ray)
+float sheen_accel_transmittance(const SheenAccel *a, const Ray *ray)
 {
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
+    Shadow shadow;
+    shadow.absorbed = shadow.n = 0;
+    ShadowContext context = {.shadows = &shadow};
+    rtcInitIntersectContext(&context.rtc);
     struct RTCRay r = single_ray(ray);
-    rtcOccluded1(a->world, &context, &r);
-    return r.tfar < 0.0f;
+    rtcOccluded1(a->world, &context.rtc, &r);
+    return r.tfar < 0.0f ? 0.0f : sheen_shadow_transmittance(&shadow);
 }
 
 enum { PACKET = 16 };
@@ -166,7 +182,7 @@ static void init_packet(struct RTCRay16 *p)
         p->mask[i] = ~0u;
         p->time[i] = 0.0f;
         p->flags[i] = 0;
-        p->id[i] = 0;
+        p->id[i] = (unsigned)i; // of its shadow
     }
 }
 
@@ -213,17 +229,21 @@ void sheen_accel_intersect_many(const SheenAccel *a, SheenCoherence coherence, s
     }
 }
 
-void sheen_accel_occluded_many(const SheenAccel *a, SheenCoherence coherence, size_t n, const Ray rays[],
-                               unsigned char occluded[])
+void sheen_accel_transmittance_many(const SheenAccel *a, size_t n, const Ray rays[], float transmittance[])
 {
-    struct RTCIntersectContext context = batch_context(coherence);
+    Shadow shadows[PACKET];
+    ShadowContext context = {batch_context(SHEEN_INCOHERENT), shadows};
     _Alignas(64) struct RTCRay16 p;
     _Alignas(64) int valid[PACKET];
     init_packet(&p);
     for (size_t first = 0; first < n; first += PACKET) {
         int count = fill_packet(&p, valid, n - first, rays + first);
-        rtcOccluded16(valid, a->world, &context, &p);
+        for (int i = 0; a->pierced && i < count; ++i) shadows[i].absorbed = shadows[i].n = 0;
+        rtcOccluded16(valid, a->world, &context.rtc, &p);
         // Embree marks an occluded ray by tfar = -inf; a skipped one has had a negative tfar from the start.
-        for (int i = 0; i < count; ++i) occluded[first + (size_t)i] = p.tfar[i] < 0.0f;
+        for (int i = 0; i < count; ++i) {
+            float through = a->pierced ? sheen_shadow_transmittance(&shadows[i]) : 1.0f;
+            transmittance[first + (size_t)i] = p.tfar[i] < 0.0f ? 0.0f : through;
+        }
     }
 }

@@ -25,7 +25,7 @@ typedef struct Hit {
     uint32_t instance; // index into scene->instances, SHEEN_NONE for a shape of the world
 } Hit;
 
-/** Hints for a batch: coherent rays (camera, a gather's fan in sector order, shadow rays to one light) trace faster. */
+/** Hints for a batch: coherent rays (camera, a gather's fan in sector order) trace faster. */
 typedef enum SheenCoherence { SHEEN_INCOHERENT, SHEEN_COHERENT } SheenCoherence;
 
 /**
@@ -37,11 +37,23 @@ SHEEN_NODISCARD SheenStatus sheen_accel_create(const SheenScene *scene, SheenPoo
                                                SheenAccel **out);
 void sheen_accel_destroy(SheenAccel **accel);
 
-/** Nearest hit of one ray; hit->shape is SHEEN_NONE for a miss. Thread-safe. */
+/**
+ * Nearest hit of one ray, where a hole, a place that lets all light pass straight on, is no surface unless it shines;
+ * hit->shape is SHEEN_NONE for a miss. Thread-safe.
+ */
 void sheen_accel_intersect(const SheenAccel *accel, const Ray *ray, Hit *hit);
 
-/** @return true when anything lies on the segment. Thread-safe. */
-bool sheen_accel_occluded(const SheenAccel *accel, const Ray *ray);
+/**
+ * @return the share of light that passes the segment: 0 where anything opaque lies on it, 1 where nothing does, between
+ *         the product of what the materials on it let pass straight on (scene/passage.h). Thread-safe.
+ */
+float sheen_accel_transmittance(const SheenAccel *accel, const Ray *ray);
+
+/** @return true when no light passes the segment. Thread-safe. */
+static inline bool sheen_accel_occluded(const SheenAccel *accel, const Ray *ray)
+{
+    return sheen_accel_transmittance(accel, ray) == 0.0f;
+}
 
 /**
  * Nearest hits of n rays, traced in packets of 16 in the order given. Rays with t_max < 0 are skipped (their hit is a
@@ -50,8 +62,10 @@ bool sheen_accel_occluded(const SheenAccel *accel, const Ray *ray);
 void sheen_accel_intersect_many(const SheenAccel *accel, SheenCoherence coherence, size_t n, const Ray rays[],
                                 Hit hits[]);
 
-/** occluded[i] = 1 when anything lies on segment i; skipped rays (t_max < 0) count as occluded. Thread-safe. */
-void sheen_accel_occluded_many(const SheenAccel *accel, SheenCoherence coherence, size_t n, const Ray rays[],
-                               unsigned char occluded[]);
+/**
+ * transmittance[i] is that of segment i, traced in packets of 16; of skipped rays (t_max < 0) it is 0. Always as
+ * incoherent rays: for them alone it is known that Embree comes to an end. Thread-safe.
+ */
+void sheen_accel_transmittance_many(const SheenAccel *accel, size_t n, const Ray rays[], float transmittance[]);
 
 #endif

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ray/quadric.h"
 
-#include <stddef.h>
-
 // Intersections are computed in double: a float discriminant loses the edge of a small or distant sphere.
 typedef struct RayD {
     double o[3], d[3];
@@ -51,86 +49,70 @@ static bool intersect_shape(const SheenShape *shape, const RayD *r, double *t)
                                              : intersect_disk(&shape->disk, r, t);
 }
 
-// Embree names the fields of a packet of n rays in C++ only. In memory they are arrays of n 32-bit words, one field
-// after another in the order of struct RTCRayHit.
-typedef union Word {
-    float f;
-    uint32_t u;
-} Word;
-
-enum {
-    ORG_X,
-    ORG_Y,
-    ORG_Z,
-    T_NEAR,
-    DIR_X,
-    DIR_Y,
-    DIR_Z,
-    TIME,
-    T_FAR,
-    MASK,
-    ID,
-    FLAGS,
-    NG_X,
-    NG_Y,
-    NG_Z,
-    HIT_U,
-    HIT_V,
-    PRIMITIVE,
-    GEOMETRY,
-    INSTANCE
-};
-_Static_assert(sizeof(struct RTCRay) >= T_FAR * sizeof(float) &&
-                   offsetof(struct RTCRay, tfar) == T_FAR * sizeof(float) &&
-                   offsetof(struct RTCRayHit, hit.geomID) == GEOMETRY * sizeof(float) &&
-                   offsetof(struct RTCRayHit, hit.instID) == INSTANCE * sizeof(float),
-               "the order of Embree's fields");
-
-static Word *field(void *packet, unsigned n, unsigned which, unsigned lane)
-{
-    return (Word *)packet + (size_t)which * n + lane;
-}
-
 static RayD ray_of_packet(void *packet, unsigned n, unsigned i)
 {
-    return (RayD){{field(packet, n, ORG_X, i)->f, field(packet, n, ORG_Y, i)->f, field(packet, n, ORG_Z, i)->f},
-                  {field(packet, n, DIR_X, i)->f, field(packet, n, DIR_Y, i)->f, field(packet, n, DIR_Z, i)->f},
-                  field(packet, n, T_NEAR, i)->f,
-                  field(packet, n, T_FAR, i)->f};
+    Vec3 o = packet_origin(packet, n, i), d = packet_direction(packet, n, i);
+    return (RayD){
+        {o.x, o.y, o.z}, {d.x, d.y, d.z}, packet_field(packet, n, T_NEAR, i)->f, packet_field(packet, n, T_FAR, i)->f};
+}
+
+static PiercedHit pierced_hit(const RayD *r, double t, unsigned geometry, unsigned instance)
+{
+    Vec3 d = v3((float)r->d[0], (float)r->d[1], (float)r->d[2]);
+    Vec3 p = v3_mad(v3((float)r->o[0], (float)r->o[1], (float)r->o[2]), (float)t, d);
+    return (PiercedHit){.p = p, .d = d, .t = (float)t, .geometry = geometry, .instance = instance};
 }
 
 static void quadric_intersect(const struct RTCIntersectFunctionNArguments *args)
 {
     unsigned n = args->N;
     void *packet = args->rayhit;
+    const TracedShape *traced = args->geometryUserPtr;
     for (unsigned i = 0; i < n; ++i) {
         if (!args->valid[i]) continue;
         RayD r = ray_of_packet(packet, n, i);
         double t;
-        if (!intersect_shape(args->geometryUserPtr, &r, &t)) continue;
-        field(packet, n, T_FAR, i)->f = (float)t;
-        field(packet, n, HIT_U, i)->f = 0.0f;
-        field(packet, n, HIT_V, i)->f = 0.0f;
-        field(packet, n, PRIMITIVE, i)->u = args->primID;
-        field(packet, n, GEOMETRY, i)->u = args->geomID;
-        field(packet, n, INSTANCE, i)->u = args->context->instID[0];
+        bool found = intersect_shape(traced->shape, &r, &t);
+        while (found && traced->pierced) { // past holes, to the sphere's other side
+            PiercedHit hit = pierced_hit(&r, t, args->geomID, args->context->instID[0]);
+            if (!sheen_hole_at(traced, &hit)) break;
+            r.t_near = nextafter(t, INFINITY);
+            found = intersect_shape(traced->shape, &r, &t);
+        }
+        if (!found) continue;
+        packet_field(packet, n, T_FAR, i)->f = (float)t;
+        packet_field(packet, n, HIT_U, i)->f = 0.0f;
+        packet_field(packet, n, HIT_V, i)->f = 0.0f;
+        packet_field(packet, n, PRIMITIVE, i)->u = args->primID;
+        packet_field(packet, n, GEOMETRY, i)->u = args->geomID;
+        packet_field(packet, n, INSTANCE, i)->u = args->context->instID[0];
     }
 }
 
 static void quadric_occluded(const struct RTCOccludedFunctionNArguments *args)
 {
     unsigned n = args->N;
+    const TracedShape *traced = args->geometryUserPtr;
     for (unsigned i = 0; i < n; ++i) {
         if (!args->valid[i]) continue;
         RayD r = ray_of_packet(args->ray, n, i);
         double t;
-        if (intersect_shape(args->geometryUserPtr, &r, &t)) field(args->ray, n, T_FAR, i)->f = -INFINITY;
+        bool found = intersect_shape(traced->shape, &r, &t);
+        while (found && traced->pierced) {
+            PiercedHit hit = pierced_hit(&r, t, args->geomID, args->context->instID[0]);
+            ShadowContext *context = (ShadowContext *)args->context;
+            if (sheen_shadow_meet(traced, &hit, &context->shadows[packet_field(args->ray, n, ID, i)->u])) break;
+            r.t_near = nextafter(t, INFINITY);
+            found = intersect_shape(traced->shape, &r, &t);
+        }
+        if (found) packet_field(args->ray, n, T_FAR, i)->f = -INFINITY;
     }
 }
 
 static void quadric_bounds(const struct RTCBoundsFunctionArguments *args)
 {
-    const SheenShape *shape = args->geometryUserPtr;
+    const TracedShape *traced = args->geometryUserPtr;
+    const SheenShape *shape = traced->shape;
     Vec3 c, h;
     if (shape->kind == SHEEN_SHAPE_SPHERE) {
         c = shape->sphere.center;
@@ -150,17 +132,12 @@ static void quadric_bounds(const struct RTCBoundsFunctionArguments *args)
                                          .upper_z = c.z + h.z + pad};
 }
 
-RTCGeometry sheen_quadric_geometry(RTCDevice device, const SheenShape *shape)
+RTCGeometry sheen_quadric_geometry(RTCDevice device, TracedShape *shape)
 {
     RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     if (!g) return NULL;
     rtcSetGeometryUserPrimitiveCount(g, 1);
-    // Embree wants a mutable pointer; the callbacks above only read through it.
-    union {
-        const SheenShape *in;
-        void *out;
-    } pointer = {.in = shape};
-    rtcSetGeometryUserData(g, pointer.out);
+    rtcSetGeometryUserData(g, shape);
     rtcSetGeometryBoundsFunction(g, quadric_bounds, NULL);
     rtcSetGeometryIntersectFunction(g, quadric_intersect);
     rtcSetGeometryOccludedFunction(g, quadric_occluded);

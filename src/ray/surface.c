@@ -31,6 +31,75 @@ float sheen_surface_clearance(Vec3 p, Vec3 n, float extent)
     return clearance(&m, n);
 }
 
+// ---- texture coordinates ----------------------------------------------------------------------------------------
+
+static Vec2 mesh_uv(const SheenMesh *mesh, uint32_t triangle, float u, float v)
+{
+    if (!mesh->uv) return v2(u, v);
+    const uint32_t *tri = mesh->triangles[triangle];
+    const Vec2 *t = mesh->uv;
+    float w = 1.0f - u - v;
+    return v2(w * t[tri[0]].x + u * t[tri[1]].x + v * t[tri[2]].x, w * t[tri[0]].y + u * t[tri[1]].y + v * t[tri[2]].y);
+}
+
+// @param d  unit, from the centre
+static Vec2 sphere_uv(const SheenSphere *sphere, Vec3 d)
+{
+    Vec3 l = frame_to_local(&sphere->frame, d);
+    float azimuth = atan2f(l.y, l.x);
+    if (azimuth < 0.0f) azimuth += 2.0f * SHEEN_PI;
+    return v2(azimuth * (0.5f * SHEEN_INV_PI), acosf(clampf(l.z, -1.0f, 1.0f)) * SHEEN_INV_PI);
+}
+
+// @param q  from the centre, in the plane
+static Vec2 disk_uv(const SheenDisk *disk, Vec3 q)
+{
+    float uu = v3_length2(disk->du), vv = v3_length2(disk->dv), uv = v3_dot(disk->du, disk->dv);
+    float qu = v3_dot(q, disk->du), qv = v3_dot(q, disk->dv), det = uu * vv - uv * uv;
+    float x = (qu * vv - qv * uv) / det, y = (qv * uu - qu * uv) / det;
+    float azimuth = atan2f(y, x);
+    if (azimuth < 0.0f) azimuth += 2.0f * SHEEN_PI;
+    return v2(sqrtf(x * x + y * y), azimuth * (0.5f * SHEEN_INV_PI));
+}
+
+// From a disk's centre to a point near its plane, in the plane.
+static Vec3 onto_disk(const SheenDisk *disk, Vec3 p)
+{
+    Vec3 q = v3_sub(p, disk->center);
+    return v3_mad(q, -v3_dot(q, disk->n), disk->n);
+}
+
+Vec2 sheen_surface_uv(const SheenShape *shape, uint32_t triangle, float u, float v, Vec3 p)
+{
+    switch (shape->kind) {
+    case SHEEN_SHAPE_SPHERE:
+        return sphere_uv(&shape->sphere, v3_normalize(v3_sub(p, shape->sphere.center)));
+    case SHEEN_SHAPE_DISK:
+        return disk_uv(&shape->disk, onto_disk(&shape->disk, p));
+    case SHEEN_SHAPE_MESH:
+        break;
+    }
+    return mesh_uv(&shape->mesh, triangle, u, v);
+}
+
+Vec3 sheen_surface_front(const SheenShape *shape, uint32_t triangle, Vec3 p)
+{
+    const SheenMesh *mesh = &shape->mesh;
+    switch (shape->kind) {
+    case SHEEN_SHAPE_SPHERE:
+        return v3_scale(v3_sub(p, shape->sphere.center), shape->sphere.flip ? -1.0f : 1.0f);
+    case SHEEN_SHAPE_DISK:
+        return shape->disk.n;
+    case SHEEN_SHAPE_MESH:
+        break;
+    }
+    const uint32_t *tri = mesh->triangles[triangle];
+    Vec3 p0 = mesh->p[tri[0]];
+    return v3_cross(v3_sub(mesh->p[tri[1]], p0), v3_sub(mesh->p[tri[2]], p0));
+}
+
+// ---- points -----------------------------------------------------------------------------------------------------
+
 static Magnitude surface_of_mesh(const SheenMesh *mesh, const Hit *hit, SurfacePoint *s)
 {
     const uint32_t *tri = mesh->triangles[hit->triangle];
@@ -44,12 +113,7 @@ static Magnitude surface_of_mesh(const SheenMesh *mesh, const Hit *hit, SurfaceP
         Vec3 n = v3_mad(v3_mad(v3_scale(mesh->n[tri[0]], w), u, mesh->n[tri[1]]), v, mesh->n[tri[2]]);
         if (v3_length2(n) > 1e-12f) s->ns = v3_normalize(n);
     }
-    s->uv = v2(u, v);
-    if (mesh->uv) {
-        const Vec2 *t = mesh->uv;
-        s->uv = v2(w * t[tri[0]].x + u * t[tri[1]].x + v * t[tri[2]].x,
-                   w * t[tri[0]].y + u * t[tri[1]].y + v * t[tri[2]].y);
-    }
+    s->uv = mesh_uv(mesh, hit->triangle, u, v);
     // The normal of a sliver is a difference of products that nearly cancel.
     float cancelled = minf(v3_length(e1) * inverse * v3_length(e2), 1024.0f);
     return (Magnitude){v3_abs(s->p), v3_scale(v3_add(v3_abs(e1), v3_abs(e2)), cancelled)};
@@ -61,27 +125,18 @@ static Magnitude surface_of_sphere(const SheenSphere *sphere, Vec3 hit_point, Su
     s->p = v3_mad(sphere->center, sphere->radius, d);
     s->ng = sphere->flip ? v3_neg(d) : d;
     s->ns = s->ng;
-    Vec3 l = frame_to_local(&sphere->frame, d);
-    float azimuth = atan2f(l.y, l.x);
-    if (azimuth < 0.0f) azimuth += 2.0f * SHEEN_PI;
-    s->uv = v2(azimuth * (0.5f * SHEEN_INV_PI), acosf(clampf(l.z, -1.0f, 1.0f)) * SHEEN_INV_PI);
+    s->uv = sphere_uv(sphere, d);
     float r = sphere->radius;
     return (Magnitude){v3_abs(s->p), v3(r, r, r)};
 }
 
 static Magnitude surface_of_disk(const SheenDisk *disk, Vec3 hit_point, SurfacePoint *s)
 {
-    Vec3 q = v3_sub(hit_point, disk->center);
-    q = v3_mad(q, -v3_dot(q, disk->n), disk->n); // onto the plane
+    Vec3 q = onto_disk(disk, hit_point);
     s->p = v3_add(disk->center, q);
     s->ng = disk->n;
     s->ns = disk->n;
-    float uu = v3_length2(disk->du), vv = v3_length2(disk->dv), uv = v3_dot(disk->du, disk->dv);
-    float qu = v3_dot(q, disk->du), qv = v3_dot(q, disk->dv), det = uu * vv - uv * uv;
-    float x = (qu * vv - qv * uv) / det, y = (qv * uu - qu * uv) / det;
-    float azimuth = atan2f(y, x);
-    if (azimuth < 0.0f) azimuth += 2.0f * SHEEN_PI;
-    s->uv = v2(sqrtf(x * x + y * y), azimuth * (0.5f * SHEEN_INV_PI));
+    s->uv = disk_uv(disk, q);
     return (Magnitude){v3_abs(s->p), v3_add(v3_abs(disk->du), v3_abs(disk->dv))};
 }
 

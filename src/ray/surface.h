@@ -21,6 +21,14 @@ typedef struct SurfacePoint {
 void sheen_surface_from_hit(const SheenScene *scene, const Ray *ray, const Hit *hit, SurfacePoint *out);
 
 /**
+ * The texture coordinates of a hit, as in SurfacePoint, and the front's normal, not unit, in the shape's own space.
+ * @param triangle, u, v  as in Hit; meshes alone ask for them
+ * @param p               the point, spheres and disks alone ask for it
+ */
+Vec2 sheen_surface_uv(const SheenShape *shape, uint32_t triangle, float u, float v, Vec3 p);
+Vec3 sheen_surface_front(const SheenShape *shape, uint32_t triangle, Vec3 p);
+
+/**
  * How the surface moves with its texture coordinates: dp/du and dp/dv, world space, metres; v as in `s->uv`. Where a
  * mesh has no texture coordinates, or degenerate ones, any two directions orthogonal to ng and each other, of length 1.
  * For the few materials that need it; pure, thread-safe.

@@ -208,7 +208,9 @@ static void borders_of_media(void **state)
                        "id=\"fog\"/></shape><shape type=\"disk\"/>";
     assert_int_equal(kit_load_version(k, "0.6.0", body), SHEEN_OK);
     const SheenScene *s = k->scene;
-    assert_int_equal(s->materials[s->shapes[0].material].kind, SHEEN_MATERIAL_THIN_DIELECTRIC);
+    const SheenMaterial *clear = &s->materials[s->shapes[0].material];
+    assert_int_equal(clear->kind, SHEEN_MATERIAL_MASK);
+    assert_float_equal(clear->weight.value.g, 0.0f, 0.0f);
     assert_int_equal(s->materials[s->shapes[1].material].kind, SHEEN_MATERIAL_DIFFUSE);
     assert_int_equal(told(k), 1);
     s = kit_scene(k, body);

@@ -130,10 +130,10 @@ static void leave(const SheenScene *scene, SheenPool *pool, Random *r, Vec3 at, 
         float side = convex || random_in(r, -1, 1) > 0.0f ? 1.0f : -1.0f, w = safe_sqrtf(1.0f - z * z);
         Vec3 d = frame_to_world(&frame, v3(w * cosf(phi), w * sinf(phi), side * z));
         Ray away = sheen_surface_ray(&s, d);
-        unsigned char in_packet;
-        sheen_accel_occluded_many(accel, SHEEN_INCOHERENT, 1, &away, &in_packet);
+        float in_packet;
+        sheen_accel_transmittance_many(accel, 1, &away, &in_packet);
         ++t->hits;
-        t->again += sheen_accel_occluded(accel, &away) || in_packet;
+        t->again += sheen_accel_occluded(accel, &away) || in_packet < 1.0f;
         t->farthest = fmax(t->farthest, (double)(s.clearance / (v3_length(at) + size)));
     }
     sheen_accel_destroy(&accel);
