@@ -77,7 +77,9 @@ static const char *const light_kinds[] = {
     [SHEEN_LIGHT_SPOT] = "spot",
     [SHEEN_LIGHT_DIRECTIONAL] = "directional",
     [SHEEN_LIGHT_ENVIRONMENT] = "environment",
+    [SHEEN_LIGHT_PROJECTOR] = "projector",
 };
+_Static_assert(sizeof light_kinds / sizeof *light_kinds == SHEEN_LIGHT_KINDS, "each kind has a name");
 
 /** Adds one to a count by name. */
 static void count(json_t *counts, const char *name)

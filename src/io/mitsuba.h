@@ -143,6 +143,8 @@ void sheen_mi_emitter(Mitsuba *m, SheenXml *e);
 /** mitsuba_sky.c: adds the lights of `sky`, `sun` or `sunsky`. */
 void sheen_mi_sky(Mitsuba *m, SheenXml *e);
 
+/** mitsuba_camera.c: full horizontal angle of a picture `aspect` times as wide as high, radians; 0 after an error. */
+double sheen_mi_fov(Mitsuba *m, const SheenXml *e, double aspect);
 /** mitsuba_camera.c: adds the camera of a <sensor>. */
 void sheen_mi_sensor(Mitsuba *m, SheenXml *e);
 

@@ -8,8 +8,7 @@
 
 #define DEGREE (3.14159265358979323846 / 180.0)
 
-/** Full horizontal angle of a picture `aspect` times as wide as high, radians; 0 after an error. */
-static double read_fov(Mitsuba *m, const SheenXml *e, double aspect)
+double sheen_mi_fov(Mitsuba *m, const SheenXml *e, double aspect)
 {
     double fov = sheen_mi_float(m, e, "fov", 0.0) * DEGREE;
     const char *axis = sheen_mi_string(m, e, "fov_axis", "x");
@@ -189,7 +188,7 @@ void sheen_mi_sensor(Mitsuba *m, SheenXml *e)
     int64_t spp = sampler ? sheen_mi_integer(m, sampler, "sample_count", 0) : 0;
     c.spp = spp > 0 && spp <= UINT32_MAX ? (uint32_t)spp : 0;
     if (m->status) return;
-    if (!c.orthographic) c.fov_x = (float)read_fov(m, e, aspect);
+    if (!c.orthographic) c.fov_x = (float)sheen_mi_fov(m, e, aspect);
     if (!m->status) read_shift(m, e, &c);
     if (lens && !m->status) read_lens(m, e, &c);
     Transform inverse;

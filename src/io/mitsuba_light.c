@@ -26,6 +26,17 @@ static void read_point(Mitsuba *m, SheenXml *e)
     sheen_builder_add_light(m->builder, &l);
 }
 
+/** A texture of a property, for a light that shows it: radiances may be over 1. @return NULL when there is none */
+static SheenTexture *read_picture(Mitsuba *m, const SheenXml *e, const char *name)
+{
+    SheenXml *c = sheen_mi_child(e, name);
+    SheenXml *value = c ? sheen_mi_resolve(m, c) : NULL;
+    SheenTexture *t = value ? SHEEN_ARENA_NEW(m->arena, SheenTexture, 1) : NULL;
+    if (t) *t = sheen_mi_texture_of(m, value, MITSUBA_EMISSION, rgb_gray(1.0f));
+    if (value && !t) sheen_mi_fail(m, SHEEN_ERR_NOMEM, e, "out of memory");
+    return t;
+}
+
 static void read_spot(Mitsuba *m, SheenXml *e)
 {
     Transform t = sheen_mi_transform(m, e, "to_world");
@@ -42,6 +53,15 @@ static void read_spot(Mitsuba *m, SheenXml *e)
     }
     l.cos_inner = (float)cos(beam * (3.14159265358979323846 / 180.0));
     l.cos_outer = (float)cos(cutoff * (3.14159265358979323846 / 180.0));
+    l.texture = read_picture(m, e, "texture");
+    if (l.texture && cutoff >= 90.0) {
+        sheen_xml_warn(m->log, e, "a spot's texture needs a cutoffAngle below 90 degrees and is ignored");
+        l.texture = NULL;
+    }
+    if (l.texture) { // as wide as the cone; Mitsuba's v runs along y
+        l.to_world = t;
+        l.tan_x = l.tan_y = (float)tan(cutoff * (3.14159265358979323846 / 180.0));
+    }
     sheen_builder_add_light(m->builder, &l);
 }
 
@@ -75,22 +95,24 @@ static void read_envmap(Mitsuba *m, SheenXml *e)
     if (sheen_mi_bitmap(m, e, true, 0.0, &l.environment)) sheen_builder_add_light(m->builder, &l);
 }
 
-/** Light in all directions of a picture that is projected: a spot of its mean as wide as the picture stands in. */
+/** A camera the other way: its picture goes out into the scene, left along +x and up along +y. */
 static void read_projector(Mitsuba *m, SheenXml *e)
 {
     Transform t = sheen_mi_transform(m, e, "to_world");
-    SheenLight l = {.kind = SHEEN_LIGHT_SPOT, .position = transform_point(&t, v3(0, 0, 0)), .direction = axis_of(&t)};
-    SheenTexture picture = sheen_mi_texture(m, e, "irradiance", rgb_gray(1.0f));
-    float scale = (float)sheen_mi_float(m, e, "scale", 1.0);
-    // Mitsuba's radiance on the axis has this factor pi.
-    l.radiance = rgb_scale(sheen_texture_mean(&picture), scale * SHEEN_PI);
-    double fov = sheen_mi_float(m, e, "fov", 39.6); // of 50 mm
-    if (!m->status && !(fov > 0.0 && fov < 180.0))
-        sheen_mi_fail(m, SHEEN_ERR_PARSE, e, "a projector needs 0 < fov < 180, not %g", fov);
+    SheenLight l = {.kind = SHEEN_LIGHT_PROJECTOR, .position = transform_point(&t, v3(0, 0, 0))};
+    SheenTexture *picture = read_picture(m, e, "irradiance");
+    static const SheenTexture white = {
+        .kind = SHEEN_TEXTURE_CONSTANT, .value = {1, 1, 1}, .scale = {1, 1, 1}, .uv = {{1, 0, 0}, {0, 1, 0}}};
+    l.texture = picture ? picture : &white;
+    // Mitsuba's irradiance at distance 1 has this factor pi.
+    l.radiance = rgb_gray((float)sheen_mi_float(m, e, "scale", 1.0) * SHEEN_PI);
+    bool bitmap = l.texture->kind == SHEEN_TEXTURE_BITMAP;
+    double aspect = bitmap ? (double)l.texture->bitmap.width / l.texture->bitmap.height : 1.0;
+    double fov = m->status ? 0.0 : sheen_mi_fov(m, e, aspect);
     if (m->status) return;
-    l.cos_inner = l.cos_outer = (float)cos(0.5 * fov * (3.14159265358979323846 / 180.0));
-    sheen_xml_warn(m->log, e, "the light 'projector' is not supported: a spot of its picture's mean stands in");
-    sheen_mi_ignore(e, "focal_length fov_axis");
+    l.tan_x = (float)tan(0.5 * fov);
+    l.tan_y = (float)(tan(0.5 * fov) / aspect);
+    l.to_world = transform_mul(t, transform_scale(-1.0, -1.0, 1.0));
     sheen_builder_add_light(m->builder, &l);
 }
 

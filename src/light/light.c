@@ -188,17 +188,17 @@ static bool sample_area(const SheenScene *scene, const Source *s, Vec3 p, Vec2 u
     return out->pdf > 0.0f && isfinite(out->pdf);
 }
 
-// Point and spot: the inverse square of the distance is a part of what arrives, not of a density.
+// Point, spot, projector: the inverse square of the distance is a part of what arrives, not of a density.
 static bool sample_position(const SheenLight *l, Vec3 p, LightSample *out)
 {
     Vec3 d = v3_sub(l->position, p);
     float d2 = v3_length2(d);
     if (!(d2 > 0.0f)) return false;
     Vec3 wi = v3_scale(d, 1.0f / sqrtf(d2));
-    float falloff = l->kind == SHEEN_LIGHT_SPOT ? sheen_spot_falloff(l, -v3_dot(wi, l->direction)) : 1.0f;
-    if (falloff == 0.0f) return false;
+    Rgb intensity = sheen_spot_intensity(l, v3_neg(wi));
+    if (rgb_is_black(intensity)) return false;
     *out = (LightSample){
-        .wi = wi, .target = l->position, .delta = true, .radiance = rgb_scale(l->radiance, falloff / d2), .pdf = 1.0f};
+        .wi = wi, .target = l->position, .delta = true, .radiance = rgb_scale(intensity, 1.0f / d2), .pdf = 1.0f};
     return true;
 }
 

@@ -291,6 +291,7 @@ SheenStatus sheen_source_init(const SheenScene *scene, const SheenLight *light, 
         return area_init(scene, arena, out);
     case SHEEN_LIGHT_POINT:
     case SHEEN_LIGHT_SPOT:
+    case SHEEN_LIGHT_PROJECTOR:
         out->kind = light->kind == SHEEN_LIGHT_POINT ? SOURCE_POINT : SOURCE_SPOT;
         out->center = light->position;
         break;
@@ -302,6 +303,8 @@ SheenStatus sheen_source_init(const SheenScene *scene, const SheenLight *light, 
         out->kind = SOURCE_ENVIRONMENT;
         out->radius = INFINITY;
         return sheen_environment_sampler_init(light, split, arena, &out->environment);
+    case SHEEN_LIGHT_KINDS:
+        break;
     }
     return SHEEN_OK;
 }
@@ -331,12 +334,4 @@ float sheen_source_pdf_area(const Source *s, Vec3 p, Vec3 q, uint32_t triangle)
     default:
         return mesh_pdf(s, p, q, triangle);
     }
-}
-
-float sheen_spot_falloff(const SheenLight *light, float cos_angle)
-{
-    if (cos_angle >= light->cos_inner) return 1.0f;
-    if (!(cos_angle > light->cos_outer)) return 0.0f;
-    float outer = acosf(light->cos_outer);
-    return (outer - acosf(cos_angle)) / (outer - acosf(light->cos_inner));
 }

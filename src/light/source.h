@@ -6,6 +6,7 @@
 #include "light/environment.h"
 #include "light/light.h"
 #include "light/spherical.h"
+#include "light/spot.h"
 
 /** In the order in which choose.c estimates them. */
 typedef enum SourceKind {
@@ -15,7 +16,7 @@ typedef enum SourceKind {
     SOURCE_SPHERE,
     SOURCE_MESH, // any other mesh
     SOURCE_POINT,
-    SOURCE_SPOT,
+    SOURCE_SPOT, // and projectors
     SOURCE_DIRECTIONAL,
     SOURCE_ENVIRONMENT,
     SOURCE_KINDS
@@ -63,9 +64,6 @@ bool sheen_source_sample_area(const Source *s, Vec3 p, Vec2 u, SourcePoint *out)
 
 /** @return the density, 1/sr, with which sheen_source_sample_area from p draws the direction to q on the light. */
 float sheen_source_pdf_area(const Source *s, Vec3 p, Vec3 q, uint32_t triangle);
-
-/** @return the factor on a spot light's intensity at an angle from its axis with this cosine, [0, 1]. */
-float sheen_spot_falloff(const SheenLight *light, float cos_angle);
 
 /** Mean of the channels: what choices among lights go by, since errors count in all channels alike. */
 static inline float rgb_mean(Rgb c)

@@ -127,7 +127,7 @@ static float weigh_spot(const SheenLight *l, Vec3 p, Vec3 n)
     float d2 = maxf(v3_length2(d), 1e-20f), inverse = 1.0f / sqrtf(d2);
     float cosine = maxf(v3_dot(d, n) * inverse, 0.0f);
     if (cosine == 0.0f) return 0.0f;
-    return rgb_mean(l->radiance) * sheen_spot_falloff(l, -v3_dot(d, l->direction) * inverse) * cosine / d2;
+    return rgb_mean(sheen_spot_intensity(l, v3_scale(d, -inverse))) * cosine / d2;
 }
 
 // Light from one direction reaches a surface by its cosine, even light by a quarter of the flux; an environment is

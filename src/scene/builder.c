@@ -155,17 +155,23 @@ uint32_t sheen_builder_add_textured_area_light(SheenBuilder *b, uint32_t shape, 
 
 uint32_t sheen_builder_add_light(SheenBuilder *b, const SheenLight *light)
 {
-    static const char *const names[] = {"an area light", "a point light", "a spot light", "a directional light",
-                                        "the environment"};
+    static const char *const names[SHEEN_LIGHT_KINDS] = {"an area light",       "a point light",   "a spot light",
+                                                         "a directional light", "the environment", "a projector"};
     SheenLight l = *light;
     l.shape = SHEEN_NONE;
     l.radiance = checked_radiance(b, l.radiance, names[l.kind]);
-    bool has_position = l.kind == SHEEN_LIGHT_POINT || l.kind == SHEEN_LIGHT_SPOT;
+    bool has_window = l.texture != NULL && (l.kind == SHEEN_LIGHT_SPOT || l.kind == SHEEN_LIGHT_PROJECTOR);
+    bool has_position = l.kind == SHEEN_LIGHT_POINT || l.kind == SHEEN_LIGHT_SPOT || l.kind == SHEEN_LIGHT_PROJECTOR;
     bool has_direction = l.kind == SHEEN_LIGHT_DIRECTIONAL || l.kind == SHEEN_LIGHT_SPOT;
     if (has_direction) l.direction = v3_normalize(l.direction);
     if ((has_position && !sheen_position_ok(l.position)) ||
         (has_direction && !(v3_length2(l.direction) > 0.5f && v3_finite(l.direction)))) {
         sheen_warn(b->log, "%s: %s without a finite position or direction is left out", b->name, names[l.kind]);
+        return SHEEN_NONE;
+    }
+    if ((has_window || l.kind == SHEEN_LIGHT_PROJECTOR) &&
+        !(has_window && l.tan_x > 0.0f && l.tan_y > 0.0f && transform_invert(&l.to_world, &l.to_light))) {
+        sheen_warn(b->log, "%s: %s without a picture, angle or place for it is left out", b->name, names[l.kind]);
         return SHEEN_NONE;
     }
     if (l.kind != SHEEN_LIGHT_ENVIRONMENT) return list_add(b, &b->lights, &l, sizeof l);

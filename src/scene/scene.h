@@ -142,23 +142,28 @@ typedef struct SheenMaterial {
 typedef enum SheenLightKind {
     SHEEN_LIGHT_AREA,        // radiance from the front side of a shape
     SHEEN_LIGHT_POINT,       // radiance = intensity, W/sr
-    SHEEN_LIGHT_SPOT,        // intensity on the axis, linear falloff in angle between cos_inner and cos_outer
+    SHEEN_LIGHT_SPOT,        // intensity on the axis, linear falloff in angle between cos_inner and cos_outer; times a
+                             // texture, if any
     SHEEN_LIGHT_DIRECTIONAL, // radiance = irradiance on a surface that faces it, W/m^2
     SHEEN_LIGHT_ENVIRONMENT, // constant (environment.width = 0) or an image
+    SHEEN_LIGHT_PROJECTOR,   // radiance times texture = intensity on the axis; elsewhere over the cube of the cosine
+    SHEEN_LIGHT_KINDS        // not a kind
 } SheenLightKind;
 
 typedef struct SheenLight {
     SheenLightKind kind;
     Rgb radiance; // W m^-2 sr^-1 for area and constant environment; see the kinds; factor for an environment image
-    const SheenTexture
-        *texture;               // area: the radiance over the shape's uv, of which `radiance` is then the mean; or NULL
-    uint32_t shape;             // area: the shape, never inside an instanced group
-    Vec3 position;              // point, spot
-    Vec3 direction;             // spot: axis; directional: the way the light travels; unit
-    float cos_inner, cos_outer; // spot: full intensity inside, zero outside
-    SheenBitmap environment;    // float latitude-longitude image; row 0 is up, +y of its own space
-    Transform to_world, to_light; // environment image only. In its own space a direction d has
-                                  // u = atan2(d.x, -d.z) / 2 pi (wrapped to [0, 1)), v = acos(d.y) / pi
+    const SheenTexture *texture;  // area: the radiance over the shape's uv, of which `radiance` is then the mean; spot,
+                                  // projector: over the window; or NULL
+    uint32_t shape;               // area: the shape, never inside an instanced group
+    Vec3 position;                // point, spot, projector
+    Vec3 direction;               // spot: axis; directional: the way the light travels; unit
+    float cos_inner, cos_outer;   // spot: full intensity inside, zero outside
+    float tan_x, tan_y;           // spot and projector with a texture: it fills the window |x| <= tan_x z,
+                                  // |y| <= tan_y z of the light's own space, u along x and v against y
+    SheenBitmap environment;      // float latitude-longitude image; row 0 is up, +y of its own space
+    Transform to_world, to_light; // environment image, and lights with a window. In an image's own space a direction d
+                                  // has u = atan2(d.x, -d.z) / 2 pi (wrapped to [0, 1)), v = acos(d.y) / pi
 } SheenLight;
 
 // ---- camera -----------------------------------------------------------------------------------------------------

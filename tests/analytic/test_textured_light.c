@@ -243,6 +243,78 @@ static void test_both_integrators_light_the_floor_alike(void **state)
     stage_free(&stage);
 }
 
+/** Irradiance of a surface across the light's axis (+z) at distance 2 from it, at x, y metres there. */
+static Rgb across(const Kit *kit, float x, float y)
+{
+    LightSample s;
+    if (!sheen_light_sample(kit->lights, 0, v3(x, y, 2), v2(0.5f, 0.5f), &s)) return rgb_gray(0.0f);
+    assert_true(s.delta && fabsf(v3_length(s.target)) == 0.0f);
+    return rgb_scale(s.radiance, -s.wi.z);
+}
+
+static void picture_kit(SheenLightKind kind, const SheenTexture *t, Kit *kit)
+{
+    SheenBuilder *b = kit_begin();
+    kit_camera(b, v3(0, 0, -1), v3(0, 0, 1), v3(0, 1, 0), 1.0f);
+    kit_sphere(b, v3(0, 0, -5), 1.0f, false, kit_diffuse(b, 0.5f));
+    SheenLight light = {.kind = kind,
+                        .radiance = rgb(2, 2, 2),
+                        .texture = t,
+                        .direction = v3(0, 0, 1),
+                        .cos_inner = cosf(0.5f),
+                        .cos_outer = cosf(0.5f),
+                        .tan_x = 0.6f,
+                        .tan_y = 0.4f,
+                        .to_world = transform_identity()};
+    assert_int_not_equal(sheen_builder_add_light(b, &light), SHEEN_NONE);
+    kit_end(b, 1, kit);
+}
+
+/** The texels' places on the plane: u runs along x, v against y; each is as bright at its border as in the middle. */
+static void test_a_projector_lights_a_plane_as_its_picture_is(void **state)
+{
+    (void)state;
+    SheenTexture t = picture(true);
+    Kit kit;
+    picture_kit(SHEEN_LIGHT_PROJECTOR, &t, &kit);
+    for (int i = 0; i < 600; ++i) {
+        // Not on the borders of texels.
+        float u = ((float)(i % 30) + 0.37f) / 30.0f, v = ((float)(i / 30) + 0.37f) / 20.0f;
+        Rgb E = across(&kit, 2.0f * 0.6f * (2.0f * u - 1.0f), 2.0f * 0.4f * (1.0f - 2.0f * v));
+        Rgb texel = texels[(v > 0.5f ? 0 : 3) + (int)(3.0f * u)]; // row 0 is on top, at v = 1
+        assert_float_equal(E.g, 2.0f * texel.g / 4.0f, 1e-5f * (1.0f + texel.g));
+        assert_float_equal(E.r, 2.0f * texel.r / 4.0f, 1e-5f * (1.0f + texel.r));
+    }
+    assert_true(rgb_is_black(across(&kit, 1.21f, 0.0f)) && rgb_is_black(across(&kit, 0.0f, -0.81f)));
+    LightSample s;
+    assert_false(sheen_light_sample(kit.lights, 0, v3(0, 0, -2), v2(0.5f, 0.5f), &s)); // behind it
+    kit_free(&kit);
+}
+
+/** A spot's picture is a factor on its intensity: on the plane the cosine's cube is seen. */
+static void test_a_spots_picture_is_a_factor(void **state)
+{
+    (void)state;
+    SheenTexture t = picture(true);
+    Kit with, without;
+    picture_kit(SHEEN_LIGHT_SPOT, &t, &with);
+    picture_kit(SHEEN_LIGHT_SPOT, NULL, &without);
+    int n_lit = 0;
+    for (int i = 0; i < 600; ++i) {
+        float u = ((float)(i % 30) + 0.37f) / 30.0f, v = ((float)(i / 30) + 0.37f) / 20.0f;
+        float x = 2.0f * 0.6f * (2.0f * u - 1.0f), y = 2.0f * 0.4f * (1.0f - 2.0f * v);
+        Rgb E = across(&with, x, y), plain = across(&without, x, y),
+            texel = texels[(v > 0.5f ? 0 : 3) + (int)(3.0f * u)];
+        float cosine = 2.0f / sqrtf(x * x + y * y + 4.0f);
+        if (plain.g > 0.0f) assert_float_equal(plain.g, 2.0f * cosine * cosine * cosine / 4.0f, 1e-5f);
+        assert_float_equal(E.g, plain.g * texel.g, 1e-5f * (1.0f + texel.g));
+        n_lit += E.r > 0.0f;
+    }
+    assert_true(n_lit > 200);
+    kit_free(&with);
+    kit_free(&without);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -252,6 +324,8 @@ int main(void)
         cmocka_unit_test(test_choices_go_by_the_mean_over_the_surface),
         cmocka_unit_test(test_the_eye_sees_the_picture),
         cmocka_unit_test(test_both_integrators_light_the_floor_alike),
+        cmocka_unit_test(test_a_projector_lights_a_plane_as_its_picture_is),
+        cmocka_unit_test(test_a_spots_picture_is_a_factor),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -36,8 +36,8 @@ static const Plugins plugins[] = {
     {"<shape type=\"rectangle\"><bsdf type=\"", "\">" CONTROL CONTROL "</bsdf></shape>", "blendbsdf twosided", ""},
     {"<shape type=\"", "\"/>", "sphere cylinder disk rectangle cube",
      "hair heightfield deformable linearcurve bsplinecurve sdfgrid ellipsoids ellipsoidsmesh"},
-    {"<emitter type=\"", "\"/>", "point spot directional constant sky sun sunsky",
-     "projector timed_sunsky collimated volume astroobject"},
+    {"<emitter type=\"", "\"/>", "point spot directional constant sky sun sunsky projector",
+     "timed_sunsky collimated volume astroobject"},
     {"<shape type=\"rectangle\"><emitter type=\"", "\"/></shape>", "area", "directionalarea volume projector"},
     {"<sensor type=\"", "\"/>", "perspective thinlens orthographic",
      "perspective_rdist telecentric spherical radiancemeter irradiancemeter fluencemeter distant batch"},
@@ -217,18 +217,30 @@ static void borders_of_media(void **state)
     assert_int_equal(s->materials[s->shapes[0].material].kind, SHEEN_MATERIAL_DIFFUSE);
 }
 
-static void a_projector_becomes_a_spot(void **state)
+static void projectors_and_pictures_of_spots(void **state)
 {
     Kit *k = *state;
     const SheenScene *s =
-        kit_scene(k, "<emitter type=\"projector\"><float name=\"scale\" value=\"3\"/><rgb name=\"irradiance\" "
-                     "value=\"0.5\"/><float name=\"fov\" value=\"60\"/></emitter>");
+        kit_scene(k, "<emitter type=\"projector\"><float name=\"scale\" value=\"3\"/><texture name=\"irradiance\" "
+                     "type=\"checkerboard\"/><float name=\"fov\" value=\"60\"/></emitter>");
     assert_int_equal(s->n_lights, 1);
-    assert_int_equal(s->lights[0].kind, SHEEN_LIGHT_SPOT);
-    assert_float_equal(s->lights[0].radiance.g, 1.5f * SHEEN_PI, 1e-6f);
-    assert_float_equal(s->lights[0].cos_outer, sqrtf(0.75f), 1e-6f);
+    assert_int_equal(k->n_warnings, 1); // of the camera
+    assert_int_equal(s->lights[0].kind, SHEEN_LIGHT_PROJECTOR);
+    assert_float_equal(s->lights[0].radiance.g, 3.0f * SHEEN_PI, 1e-5f);
+    assert_float_equal(s->lights[0].tan_x, sqrtf(1.0f / 3.0f), 1e-6f);
+    assert_float_equal(s->lights[0].tan_y, sqrtf(1.0f / 3.0f), 1e-6f);
+    assert_int_equal(s->lights[0].texture->kind, SHEEN_TEXTURE_CHECKERBOARD);
     kit_refused(k, "<emitter type=\"projector\"><float name=\"fov\" value=\"180\"/></emitter>", SHEEN_ERR_PARSE,
-                "scene.xml:2:1", "0 < fov < 180");
+                "scene.xml:2:1", "between 0 and 180");
+    s = kit_scene(k, "<emitter type=\"spot\"><float name=\"cutoff_angle\" value=\"45\"/><texture name=\"texture\" "
+                     "type=\"checkerboard\"/></emitter>");
+    assert_int_equal(k->n_warnings, 1);
+    assert_float_equal(s->lights[0].tan_x, 1.0f, 1e-6f);
+    assert_non_null(s->lights[0].texture);
+    s = kit_scene(k, "<emitter type=\"spot\"><float name=\"cutoff_angle\" value=\"90\"/><texture name=\"texture\" "
+                     "type=\"checkerboard\"/></emitter>");
+    assert_non_null(strstr(k->warnings, "a spot's texture needs a cutoffAngle below 90 degrees and is ignored"));
+    assert_null(s->lights[0].texture);
 }
 
 static void sensors_of_all_kinds(void **state)
@@ -258,7 +270,7 @@ int main(void)
         KIT_TEST(names_of_metals),
         KIT_TEST(spectra_in_lists),
         KIT_TEST(borders_of_media),
-        KIT_TEST(a_projector_becomes_a_spot),
+        KIT_TEST(projectors_and_pictures_of_spots),
         KIT_TEST(sensors_of_all_kinds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
