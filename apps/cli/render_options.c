@@ -127,6 +127,16 @@ const Option render_options[] = {
      .choices = filters,
      .recorded = true,
      FIELD(filter)},
+    {.kind = OPTION_NUMBER,
+     .name = "noise",
+     .argument = "E",
+     .meaning = "Of the cached integrators: the standard error, relative to a pixel's brightness, above which it gets "
+                "more samples, up to 16 times --spp. Needs --spp 8 or more. 0: every pixel has --spp samples.",
+     .standard = "0.03",
+     .example = "--noise 0.01",
+     .recorded = true,
+     RANGE(0.0, 1.0),
+     FIELD(noise)},
     {.kind = OPTION_COUNT,
      .name = "light-samples",
      .argument = "N",
@@ -301,6 +311,7 @@ RenderValues render_values_default(void)
         .light_samples = o.light_samples,
         .bounces = o.bounces,
         // The nearest decimal, so that statistics say 0.15 and not what a float makes of it.
+        .noise = (double)(int)(o.noise * 1e4f + 0.5f) / 1e4,
         .accuracy = (double)(int)(o.accuracy * 1e4f + 0.5f) / 1e4,
         .gather_rays = o.gather_rays,
         .gradients = (int)o.gradients,
@@ -372,6 +383,7 @@ SheenRenderSettings render_values_settings(RenderValues *values, const SheenCame
     o.light_samples = values->light_samples;
     o.bounces = values->bounces;
     o.time_limit = values->time_limit;
+    o.noise = (float)values->noise;
     o.accuracy = (float)values->accuracy;
     o.gather_rays = values->gather_rays;
     o.gradients = (SheenGradients)values->gradients;

@@ -19,6 +19,7 @@ typedef struct RenderValues {
     const char *camera; // name or index, NULL for the first
     uint32_t spp, light_samples, bounces;
     double time_limit;
+    double noise;
     double accuracy;
     uint32_t gather_rays;
     int gradients, secondary; // SheenGradients, SheenSecondary

@@ -41,14 +41,14 @@ char *stats_to_json(const RenderValues *values, const RunStats *run)
     const SheenStats *s = &run->render;
     json_t *frame =
         json_pack("{s:i, s:f, s:I}", "frame", 0, "time", run->times.total, "records", (json_int_t)s->records);
-    json_t *object =
-        json_pack("{s:s, s:o, s:s, s:[I, I], s:i, s:I, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I, s:I, s:[o]}", "version",
-                  SHEEN_VERSION, "scene", json_text(run->scene), "integrator", render_integrator_name(values), "size",
-                  (json_int_t)values->size.width, (json_int_t)values->size.height, "threads", (int)run->threads, "seed",
-                  (json_int_t)values->seed, "options", render_values_json(values), "time", time_json(run), "rays",
-                  rays_json(s), "records", records_json(s), "cache_bytes", (json_int_t)s->cache_bytes, "peak_rss_bytes",
-                  peak_rss_bytes(), "passes", (json_int_t)s->passes, "spp_done", (json_int_t)s->spp_done,
-                  "nonfinite_samples", (json_int_t)s->nonfinite_samples, "frames", frame);
+    json_t *object = json_pack(
+        "{s:s, s:o, s:s, s:[I, I], s:i, s:I, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I, s:f, s:I, s:[o]}", "version",
+        SHEEN_VERSION, "scene", json_text(run->scene), "integrator", render_integrator_name(values), "size",
+        (json_int_t)values->size.width, (json_int_t)values->size.height, "threads", (int)run->threads, "seed",
+        (json_int_t)values->seed, "options", render_values_json(values), "time", time_json(run), "rays", rays_json(s),
+        "records", records_json(s), "cache_bytes", (json_int_t)s->cache_bytes, "peak_rss_bytes", peak_rss_bytes(),
+        "passes", (json_int_t)s->passes, "spp_done", (json_int_t)s->spp_done, "spp_mean", s->spp_mean,
+        "nonfinite_samples", (json_int_t)s->nonfinite_samples, "frames", frame);
     char *text = object ? json_dumps(object, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
     json_decref(object);
     return text;

@@ -132,7 +132,8 @@ static void find_points(Bench *b)
     SheenStats stats = {0};
     for (uint32_t i = 0; i < sheen_tile_count(&b->work); ++i) {
         Tile tile = sheen_tile(&b->work, i);
-        if (!sheen_visibility_trace(&b->work, &tile, 0, 1, NULL, &v, &stats)) fail("out of memory");
+        if (!sheen_visibility_trace(&b->work, &tile, (SampleRange){0, 1, NULL}, NULL, &v, &stats))
+            fail("out of memory");
         if (v.n_points == 0) continue;
         ShadingPoint *more = realloc(all, (n + v.n_points) * sizeof *all);
         if (!more) fail("out of memory");

@@ -75,13 +75,12 @@ LightPlan sheen_light_plan(const SheenWork *work)
     return (LightPlan){n, deltas < n ? (wanted - deltas) / (n - deltas) : 1};
 }
 
-uint32_t sheen_light_key(const SheenWork *work, uint32_t branch)
+LightSequence sheen_light_sequence(const SheenWork *work, LightPlan plan, uint32_t branch, uint32_t pixel,
+                                   uint32_t sample)
 {
-    return hash_combine(work->options.seed ^ KEY_LIGHT, branch);
-}
-
-uint32_t sheen_light_index(const SheenWork *work, LightPlan plan, uint32_t pixel, uint32_t sample)
-{
+    uint32_t key = hash_combine(work->options.seed ^ KEY_LIGHT, branch), spp = work->options.spp;
     uint32_t x = pixel % work->width, y = pixel / work->width;
-    return sheen_sample_index(x, y, work->options.spp * plan.samples, sample * plan.samples);
+    // The first samples of all pixels share one sequence, further ones have one for each pixel.
+    if (sample < spp) return (LightSequence){key, sheen_sample_index(x, y, spp * plan.samples, sample * plan.samples)};
+    return (LightSequence){hash_combine(key, pixel + 1), (sample - spp) * plan.samples};
 }

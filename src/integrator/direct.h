@@ -20,10 +20,15 @@ typedef struct LightPlan {
 
 LightPlan sheen_light_plan(const SheenWork *work);
 
-/** Key of the random numbers of a shading point's light samples. */
-uint32_t sheen_light_key(const SheenWork *work, uint32_t branch);
-/** Number of the first of them in the key's sequence; they follow each other. */
-uint32_t sheen_light_index(const SheenWork *work, LightPlan plan, uint32_t pixel, uint32_t sample);
+/** Where the random numbers of a shading point's light samples are. */
+typedef struct LightSequence {
+    uint32_t key;
+    uint32_t index; // of the first; they follow each other
+} LightSequence;
+
+/** @param branch, pixel, sample  of the way that sees the point */
+LightSequence sheen_light_sequence(const SheenWork *work, LightPlan plan, uint32_t branch, uint32_t pixel,
+                                   uint32_t sample);
 
 /** The numbers of one light sample. @param light  that is asked; SHEEN_NONE: one is chosen */
 static inline LightNumbers sheen_light_numbers(uint32_t key, uint32_t index, uint32_t light)

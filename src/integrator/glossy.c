@@ -51,13 +51,13 @@ Rgb sheen_glossy_lit(const SheenWork *work, const SeenSurface *v, uint32_t branc
     Rgb L = rgb_gray(0.0f);
     if (sheen_lights_count(work->lights) == 0) return L;
     LightPlan plan = sheen_light_plan(work);
-    uint32_t key = sheen_light_key(work, branch), index = sheen_light_index(work, plan, pixel, sample);
+    LightSequence from = sheen_light_sequence(work, plan, branch, pixel, sample);
     uint32_t turns = plan.each ? plan.each : 1;
     for (uint32_t turn = 0; turn < turns; ++turn) {
         uint32_t light = plan.each ? turn : SHEEN_NONE;
         uint32_t n = plan.each && sheen_light_is_delta(work->lights, light) ? 1 : plan.samples;
         for (uint32_t j = 0; j < n; ++j)
-            L = rgb_add(L, light_sample(work, v, sheen_light_numbers(key, index + j, light), n, stats));
+            L = rgb_add(L, light_sample(work, v, sheen_light_numbers(from.key, from.index + j, light), n, stats));
     }
     return L;
 }

@@ -23,7 +23,7 @@ static void first_points_task(void *user, size_t item, unsigned worker)
     FirstPoints *f = user;
     Visibility *v = &f->workers[worker], *out = &f->tiles[item];
     Tile tile = sheen_tile(f->work, (uint32_t)item);
-    if (!sheen_visibility_trace(f->work, &tile, 0, 1, NULL, v, &f->stats[worker])) return;
+    if (!sheen_visibility_trace(f->work, &tile, (SampleRange){0, 1, NULL}, NULL, v, &f->stats[worker])) return;
     out->points = malloc((v->n_points + 1) * sizeof *out->points);
     if (!out->points) return;
     out->n_points = v->n_points;
@@ -118,12 +118,43 @@ static SheenStatus fill_cache(const SheenWork *work, SheenIrradianceCache *cache
     return status;
 }
 
+// Shades samples of each pixel from `first` on, and fills the cache where they see what no record covers.
+static SheenStatus shade(const SheenWork *work, SheenIrradianceCache *cache, SheenFill *fill, uint32_t first,
+                         Picture *picture, SheenStats *stats)
+{
+    Uncovered uncovered = {0};
+    SheenStatus status = sheen_shade(work, cache, first, picture, &uncovered, stats);
+    if (status == SHEEN_OK && uncovered.n > 0) {
+        double start = sheen_clock_seconds();
+        status = sheen_fill_run(fill, uncovered.points, uncovered.n, stats);
+        stats->time_fill += sheen_clock_seconds() - start;
+        if (status == SHEEN_OK) sheen_shade_uncovered(work, cache, &uncovered, picture, stats);
+    }
+    sheen_uncovered_free(&uncovered);
+    return status;
+}
+
+static SheenStatus shade_picture(const SheenWork *work, SheenIrradianceCache *cache, SheenFill *fill, SheenFilm *film,
+                                 SheenStats *stats)
+{
+    Picture picture;
+    uint64_t more = 0;
+    if (!sheen_picture_create(work, film, &picture)) return SHEEN_ERR_NOMEM;
+    SheenStatus status = shade(work, cache, fill, 0, &picture, stats);
+    if (status == SHEEN_OK && !sheen_picture_plan(work->options.noise, &picture, &more)) status = SHEEN_ERR_NOMEM;
+    if (status == SHEEN_OK && more > 0) status = shade(work, cache, fill, work->options.spp, &picture, stats);
+    sheen_picture_average(&picture);
+    stats->spp_done = work->options.spp;
+    stats->spp_mean = (double)work->options.spp + (double)more / ((double)film->width * film->height);
+    sheen_picture_free(&picture);
+    return status;
+}
+
 SheenStatus sheen_irradiance_render(const SheenWork *work, SheenFilm *film, SheenStats *stats)
 {
     SheenIrradianceCache *cache = NULL;
     SheenDeep *deep = NULL;
     SheenFill *fill = NULL;
-    Uncovered uncovered = {0};
     bool indirect = work->options.bounces > 0 || gathers_see_light(work->scene);
     SheenStatus status = SHEEN_OK;
     if (indirect) {
@@ -131,20 +162,12 @@ SheenStatus sheen_irradiance_render(const SheenWork *work, SheenFilm *film, Shee
                                                &work->scene->bounds, &cache);
         if (status == SHEEN_OK) status = fill_cache(work, cache, &deep, &fill, stats);
     }
-    if (status == SHEEN_OK) status = sheen_shade(work, cache, film, &uncovered, stats);
-    if (status == SHEEN_OK && uncovered.n > 0) {
-        double start = sheen_clock_seconds();
-        status = sheen_fill_run(fill, uncovered.points, uncovered.n, stats);
-        stats->time_fill += sheen_clock_seconds() - start;
-        if (status == SHEEN_OK) sheen_shade_uncovered(work, cache, &uncovered, film, stats);
-    }
+    if (status == SHEEN_OK) status = shade_picture(work, cache, fill, film, stats);
     if (cache) {
         stats->records = cache->n_records;
         stats->cache_bytes = sheen_irradiance_cache_bytes(cache);
     }
     if (deep) stats->deep_records = sheen_deep_records(deep);
-    stats->spp_done = work->options.spp;
-    sheen_uncovered_free(&uncovered);
     sheen_fill_destroy(&fill);
     sheen_deep_destroy(&deep);
     sheen_irradiance_cache_destroy(&cache);

@@ -234,6 +234,7 @@ static SheenStatus run_passes(Passes *p, SheenStats *stats)
         p->first += p->size;
         ++stats->passes;
         stats->spp_done = p->first;
+        stats->spp_mean = p->first;
     }
     return SHEEN_OK;
 }

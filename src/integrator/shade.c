@@ -33,8 +33,7 @@ typedef struct Shader {
     DirectScratch direct;
     DiffusePoint *points; // [capacity]
     uint32_t *at;         // which of the shading points they are
-    uint32_t *keys;       // of the points' random numbers
-    uint32_t *indices;    // of the points' first light samples
+    LightSequence *from;  // of the points' random numbers
     LightNumbers *numbers;
     Rgb *irradiance;
     size_t capacity;
@@ -46,7 +45,8 @@ typedef struct Shader {
 typedef struct ShadeTask {
     const SheenWork *work;
     const SheenIrradianceCache *cache;
-    SheenFilm *film;
+    uint32_t first;
+    Picture *picture;
     Shader *shaders;      // [workers]
     Uncovered *uncovered; // [tiles]
 } ShadeTask;
@@ -55,8 +55,7 @@ static void free_points(Shader *s)
 {
     free(s->points);
     free(s->at);
-    free(s->keys);
-    free(s->indices);
+    free(s->from);
     free(s->numbers);
     free(s->irradiance);
 }
@@ -67,11 +66,10 @@ static bool reserve(Shader *s, size_t n)
     free_points(s);
     s->points = malloc(n * sizeof *s->points);
     s->at = malloc(n * sizeof *s->at);
-    s->keys = malloc(n * sizeof *s->keys);
-    s->indices = malloc(n * sizeof *s->indices);
+    s->from = malloc(n * sizeof *s->from);
     s->numbers = malloc(n * sizeof *s->numbers);
     s->irradiance = malloc(n * sizeof *s->irradiance);
-    s->capacity = s->points && s->at && s->keys && s->indices && s->numbers && s->irradiance ? n : 0;
+    s->capacity = s->points && s->at && s->from && s->numbers && s->irradiance ? n : 0;
     return s->capacity > 0 && sheen_direct_reserve(&s->direct, n);
 }
 
@@ -83,36 +81,28 @@ static void shader_free(Shader *s)
 }
 
 // Adds the light that a point reflects for irradiance E, and counts it as `aov`.
-static void add_reflected(const SheenWork *work, const ShadingPoint *p, Rgb E, SheenAov aov, SheenFilm *film,
-                          SheenStats *stats)
+static void add_reflected(const ShadingPoint *p, Rgb E, SheenAov aov, Picture *picture, SheenStats *stats)
 {
-    float weight = SHEEN_INV_PI / (float)work->options.spp;
-    Rgb value = rgb_scale(rgb_mul(rgb_mul(p->throughput, p->point.reflectance), E), weight);
-    if (!rgb_finite(value)) {
-        ++stats->nonfinite_samples;
-        return;
-    }
-    film->color[p->pixel] = rgb_add(film->color[p->pixel], value);
-    film_add(film, aov, p->pixel % work->width, p->pixel / work->width, value);
+    Rgb value = rgb_scale(rgb_mul(rgb_mul(p->throughput, p->point.reflectance), E), SHEEN_INV_PI);
+    sheen_picture_add(picture, p->pixel, p->sample, value, aov, stats);
 }
 
 // Without branches or calls: the compiler makes vector instructions of it.
-static void light_numbers(size_t n, const uint32_t keys[], const uint32_t indices[], uint32_t j, uint32_t light,
-                          LightNumbers out[])
+static void light_numbers(size_t n, const LightSequence from[], uint32_t j, uint32_t light, LightNumbers out[])
 {
-    for (size_t i = 0; i < n; ++i) out[i] = sheen_light_numbers(keys[i], indices[i] + j, light);
+    for (size_t i = 0; i < n; ++i) out[i] = sheen_light_numbers(from[i].key, from[i].index + j, light);
 }
 
 static void ask(const SheenWork *work, size_t n, uint32_t light, uint32_t samples, Shader *s)
 {
     for (uint32_t j = 0; j < samples; ++j) {
-        light_numbers(n, s->keys, s->indices, j, light, s->numbers);
+        light_numbers(n, s->from, j, light, s->numbers);
         s->stats.rays_shadow +=
             sheen_direct_add(work, n, s->points, s->numbers, 1.0f / (float)samples, &s->direct, s->irradiance);
     }
 }
 
-static bool direct_light(const SheenWork *work, Shader *s, SheenFilm *film)
+static bool direct_light(const SheenWork *work, Shader *s, Picture *picture)
 {
     size_t n = s->visibility.n_points, m = 0;
     const ShadingPoint *points = s->visibility.points;
@@ -124,15 +114,14 @@ static bool direct_light(const SheenWork *work, Shader *s, SheenFilm *film)
         s->points[m] = points[i].point;
         s->irradiance[m] = rgb_gray(0.0f);
         s->at[m] = (uint32_t)i;
-        s->keys[m] = sheen_light_key(work, points[i].branch);
-        s->indices[m++] = sheen_light_index(work, plan, points[i].pixel, points[i].sample);
+        s->from[m++] = sheen_light_sequence(work, plan, points[i].branch, points[i].pixel, points[i].sample);
     }
     if (plan.each == 0) ask(work, m, SHEEN_NONE, plan.samples, s);
     for (uint32_t light = 0; light < plan.each; ++light)
         ask(work, m, light, sheen_light_is_delta(work->lights, light) ? 1 : plan.samples, s);
     for (size_t i = 0; i < m; ++i) {
         const ShadingPoint *p = &points[s->at[i]];
-        add_reflected(work, p, s->irradiance[i], p->gathered ? SHEEN_AOV_INDIRECT : SHEEN_AOV_DIRECT, film, &s->stats);
+        add_reflected(p, s->irradiance[i], p->gathered ? SHEEN_AOV_INDIRECT : SHEEN_AOV_DIRECT, picture, &s->stats);
     }
     return true;
 }
@@ -143,61 +132,80 @@ static void add_cache_layers(const SheenWork *work, const SheenIrradianceCache *
                              const Contributors *c, SheenFilm *film)
 {
     uint32_t x = p->pixel % work->width, y = p->pixel / work->width;
-    float weight = 1.0f / (float)work->options.spp, error = 0.0f;
+    float error = 0.0f;
     bool dot = false;
     for (unsigned i = 0; i < c->n; ++i) {
         error += c->weight[i] / (c->weight[i] + 1.0f / cache->accuracy);
         Vec3 d = v3_sub(p->point.p, cache->records[c->record[i]].p);
         dot = dot || v3_length2(d) < sqrf(1.5f * p->footprint);
     }
-    film_add(film, SHEEN_AOV_COVERAGE, x, y, rgb_gray(weight * (float)c->n));
-    film_add(film, SHEEN_AOV_ACCURACY, x, y, rgb_gray(weight * cache->accuracy));
-    film_add(film, SHEEN_AOV_ERROR, x, y, rgb_gray(weight * error / c->weight_sum));
-    if (dot) film_add(film, SHEEN_AOV_RECORDS, x, y, rgb_gray(weight));
+    film_add(film, SHEEN_AOV_COVERAGE, x, y, rgb_gray((float)c->n));
+    film_add(film, SHEEN_AOV_ACCURACY, x, y, rgb_gray(cache->accuracy));
+    film_add(film, SHEEN_AOV_ERROR, x, y, rgb_gray(error / c->weight_sum));
+    if (dot) film_add(film, SHEEN_AOV_RECORDS, x, y, rgb_gray(1.0f));
 }
 
 static bool indirect_light(const SheenWork *work, const SheenIrradianceCache *cache, const ShadingPoint *p,
-                           SheenFilm *film, SheenStats *stats)
+                           Picture *picture, SheenStats *stats)
 {
     Contributors c;
     sheen_irradiance_cache_find(cache, p->point.p, p->point.n, 0.0f, &c);
     if (c.n == 0) return false;
     Rgb E = sheen_irradiance_cache_interpolate(cache, &c, p->point.p, p->point.n);
-    add_reflected(work, p, E, SHEEN_AOV_INDIRECT, film, stats);
-    add_cache_layers(work, cache, p, &c, film);
+    add_reflected(p, E, SHEEN_AOV_INDIRECT, picture, stats);
+    add_cache_layers(work, cache, p, &c, picture->film);
     return true;
 }
 
-static void shade_task(void *user, size_t item, unsigned worker)
+// Shades some samples of a tile. @return false when out of memory
+static bool shade_range(const ShadeTask *t, const Tile *tile, SampleRange range, Uncovered *uncovered, Shader *s)
 {
-    ShadeTask *t = user;
-    const SheenWork *work = t->work;
-    Shader *s = &t->shaders[worker];
-    Tile tile = sheen_tile(work, (uint32_t)item);
     double t0 = sheen_clock_seconds();
-    if (!sheen_visibility_trace(work, &tile, 0, work->options.spp, t->film, &s->visibility, &s->stats))
-        s->failed = true;
+    if (!sheen_visibility_trace(t->work, tile, range, t->picture, &s->visibility, &s->stats)) return false;
     double t1 = sheen_clock_seconds();
-    if (!s->failed && !direct_light(work, s, t->film)) s->failed = true;
+    if (!direct_light(t->work, s, t->picture)) return false;
     double t2 = sheen_clock_seconds();
-    for (size_t i = 0; t->cache && i < s->visibility.n_points && !s->failed; ++i) {
+    for (size_t i = 0; t->cache && i < s->visibility.n_points; ++i) {
         const ShadingPoint *p = &s->visibility.points[i];
-        if (!indirect_light(work, t->cache, p, t->film, &s->stats) && !uncovered_push(&t->uncovered[item], p, 1))
-            s->failed = true;
+        if (!indirect_light(t->work, t->cache, p, t->picture, &s->stats) && !uncovered_push(uncovered, p, 1))
+            return false;
     }
     double t3 = sheen_clock_seconds();
     s->visibility_seconds += t1 - t0;
     s->direct_seconds += t2 - t1;
     s->interpolate_seconds += t3 - t2;
-    if (worker == 0) progress_report(work->progress, "shade", (double)item / sheen_tile_count(work), 0);
+    return true;
 }
 
-SheenStatus sheen_shade(const SheenWork *work, const SheenIrradianceCache *cache, SheenFilm *film, Uncovered *uncovered,
-                        SheenStats *stats)
+static uint32_t most_samples(const Picture *picture, const Tile *tile)
+{
+    uint32_t most = 0;
+    for (uint32_t y = tile->y; y < tile->y + tile->height; ++y)
+        for (uint32_t x = tile->x; x < tile->x + tile->width; ++x) {
+            uint32_t n = picture->samples[(size_t)y * picture->film->width + x];
+            most = n > most ? n : most;
+        }
+    return most;
+}
+
+static void shade_task(void *user, size_t item, unsigned worker)
+{
+    ShadeTask *t = user;
+    Shader *s = &t->shaders[worker];
+    Tile tile = sheen_tile(t->work, (uint32_t)item);
+    uint32_t end = most_samples(t->picture, &tile), spp = t->work->options.spp; // so many at once fit the buffers
+    for (uint32_t first = t->first; first < end && !s->failed; first += spp)
+        if (!shade_range(t, &tile, (SampleRange){first, spp, t->picture->samples}, &t->uncovered[item], s))
+            s->failed = true;
+    if (worker == 0) progress_report(t->work->progress, "shade", (double)item / sheen_tile_count(t->work), 0);
+}
+
+SheenStatus sheen_shade(const SheenWork *work, const SheenIrradianceCache *cache, uint32_t first, Picture *picture,
+                        Uncovered *uncovered, SheenStats *stats)
 {
     unsigned workers = sheen_pool_size(work->pool);
     uint32_t tiles = sheen_tile_count(work);
-    ShadeTask task = {work, cache, film, calloc(workers, sizeof(Shader)), calloc(tiles, sizeof(Uncovered))};
+    ShadeTask task = {work, cache, first, picture, calloc(workers, sizeof(Shader)), calloc(tiles, sizeof(Uncovered))};
     SheenStatus status = task.shaders && task.uncovered ? SHEEN_OK : SHEEN_ERR_NOMEM;
     double start = sheen_clock_seconds();
     if (status == SHEEN_OK && !sheen_pool_run(work->pool, tiles, shade_task, &task, work->cancel))
@@ -227,7 +235,7 @@ SheenStatus sheen_shade(const SheenWork *work, const SheenIrradianceCache *cache
 }
 
 void sheen_shade_uncovered(const SheenWork *work, const SheenIrradianceCache *cache, const Uncovered *uncovered,
-                           SheenFilm *film, SheenStats *stats)
+                           Picture *picture, SheenStats *stats)
 {
-    for (size_t i = 0; i < uncovered->n; ++i) indirect_light(work, cache, &uncovered->points[i], film, stats);
+    for (size_t i = 0; i < uncovered->n; ++i) indirect_light(work, cache, &uncovered->points[i], picture, stats);
 }

@@ -15,16 +15,16 @@ typedef struct Uncovered {
 void sheen_uncovered_free(Uncovered *u);
 
 /**
- * Shades the whole picture.
+ * Shades samples [first, ...) of every pixel up to as many as picture->samples has.
  * @param cache      NULL when there is no indirect light to read
  * @param uncovered  out: points whose indirect light is still missing
  * Errors: SHEEN_ERR_NOMEM, SHEEN_ERR_CANCELLED.
  */
-SHEEN_NODISCARD SheenStatus sheen_shade(const SheenWork *work, const SheenIrradianceCache *cache, SheenFilm *film,
-                                        Uncovered *uncovered, SheenStats *stats);
+SHEEN_NODISCARD SheenStatus sheen_shade(const SheenWork *work, const SheenIrradianceCache *cache, uint32_t first,
+                                        Picture *picture, Uncovered *uncovered, SheenStats *stats);
 
 /** Adds the indirect light of points that have records by now. */
 void sheen_shade_uncovered(const SheenWork *work, const SheenIrradianceCache *cache, const Uncovered *uncovered,
-                           SheenFilm *film, SheenStats *stats);
+                           Picture *picture, SheenStats *stats);
 
 #endif

@@ -71,43 +71,57 @@ static bool reserve_batch(Visibility *v, size_t n)
     return v->batch_capacity > 0;
 }
 
-static SheenSampler pixel_sampler(const SheenWork *work, uint32_t x, uint32_t y, uint32_t s)
+// The first samples of all pixels share one sequence, further ones have one for each pixel.
+static SheenSampler camera_sampler(const SheenWork *work, uint32_t x, uint32_t y, uint32_t s)
 {
-    return sampler_make(hash_u32(work->options.seed), sheen_sample_index(x, y, work->options.spp, s));
+    uint32_t key = hash_u32(work->options.seed), spp = work->options.spp;
+    if (s < spp) return sampler_make(key, sheen_sample_index(x, y, spp, s));
+    return sampler_make(hash_combine(key, y * work->width + x + 1), s - spp);
 }
 
-// What the pixel's samples count for in their mean, the negative ones in weight[1].
-static void pixel_weights(const SheenWork *work, uint32_t x, uint32_t y, float weight[2])
+// What samples [first, end) of a pixel count for in their mean, the negative ones in weight[1].
+static void pixel_weights(const SheenWork *work, uint32_t x, uint32_t y, uint32_t first, uint32_t end, float weight[2])
 {
     uint32_t n_negative = 0;
-    for (uint32_t s = 0; work->filter && work->filter->has_signs && s < work->options.spp; ++s) {
-        SheenSampler sampler = pixel_sampler(work, x, y, s);
+    for (uint32_t s = first; work->filter && work->filter->has_signs && s < end; ++s) {
+        SheenSampler sampler = camera_sampler(work, x, y, s);
         bool negative;
         sheen_pixel_filter_sample(work->filter, sampler_2d(&sampler), &negative);
         n_negative += negative;
     }
     double exact[2];
-    sheen_pixel_filter_weights(work->filter, work->options.spp, n_negative, exact);
+    sheen_pixel_filter_weights(work->filter, end - first, n_negative, exact);
     weight[0] = (float)exact[0], weight[1] = (float)exact[1];
 }
 
-static bool push_camera_rays(const SheenWork *work, const SheenEye *eye, const Tile *tile, uint32_t first, uint32_t n,
+static bool push_pixel(const SheenWork *work, const SheenEye *eye, uint32_t x, uint32_t y, SampleRange range,
+                       Visibility *v)
+{
+    uint32_t pixel = y * work->width + x, spp = work->options.spp;
+    // The first samples and the further ones have mean weight 1 each.
+    uint32_t all = range.ends ? range.ends[pixel] : spp,
+             last = range.first + range.n < all ? range.first + range.n : all;
+    if (range.first >= last) return true;
+    float weight[2];
+    pixel_weights(work, x, y, range.first < spp ? 0 : spp, range.first < spp ? spp : all, weight);
+    for (uint32_t s = range.first; s < last; ++s) {
+        EyeRay r = {.throughput = rgb_gray(1.0f), .pixel = pixel, .sample = s, .branch = 1};
+        SheenSampler sampler = camera_sampler(work, x, y, s);
+        bool negative;
+        r.ray = sheen_camera_ray(work, eye, x, y, &sampler, &negative);
+        r.weight = weight[negative];
+        if (!push_ray(v, 0, &r)) return false;
+    }
+    return true;
+}
+
+static bool push_camera_rays(const SheenWork *work, const SheenEye *eye, const Tile *tile, SampleRange range,
                              Visibility *v)
 {
     v->n_rays[0] = 0;
     for (uint32_t y = tile->y; y < tile->y + tile->height; ++y)
-        for (uint32_t x = tile->x; x < tile->x + tile->width; ++x) {
-            float weight[2];
-            pixel_weights(work, x, y, weight);
-            for (uint32_t s = first; s < first + n; ++s) {
-                EyeRay r = {.throughput = rgb_gray(1.0f), .pixel = y * work->width + x, .sample = s, .branch = 1};
-                SheenSampler sampler = pixel_sampler(work, x, y, s);
-                bool negative;
-                r.ray = sheen_camera_ray(work, eye, x, y, &sampler, &negative);
-                r.weight = weight[negative];
-                if (!push_ray(v, 0, &r)) return false;
-            }
-        }
+        for (uint32_t x = tile->x; x < tile->x + tile->width; ++x)
+            if (!push_pixel(work, eye, x, y, range, v)) return false;
     return true;
 }
 
@@ -157,10 +171,11 @@ static bool split(const EyeRay *r, const SeenSurface *s, int list, Visibility *v
     return true;
 }
 
-static void add_first_hit(const SheenWork *work, const EyeRay *r, const Hit *hit, const SurfacePoint *s, float weight,
+static void add_first_hit(const SheenWork *work, const EyeRay *r, const Hit *hit, const SurfacePoint *s,
                           SheenFilm *film)
 {
     uint32_t x = r->pixel % work->width, y = r->pixel / work->width;
+    float weight = r->weight;
     Vec3 n = v3_dot(s->ns, r->ray.d) <= 0.0f ? s->ns : v3_neg(s->ns);
     film_add(film, SHEEN_AOV_DEPTH, x, y, rgb_gray(weight * hit->t));
     film_add(film, SHEEN_AOV_POSITION, x, y, rgb_scale(rgb(s->p.x, s->p.y, s->p.z), weight));
@@ -178,16 +193,10 @@ static void add_first_hit(const SheenWork *work, const EyeRay *r, const Hit *hit
                  rgb((float)s->shape, (float)s->triangle, s->instance == SHEEN_NONE ? -1.0f : (float)s->instance));
 }
 
-static void add_light(const SheenWork *work, const EyeRay *r, Rgb radiance, float weight, SheenFilm *film,
-                      SheenStats *stats)
+static void add_light(const EyeRay *r, Rgb radiance, Picture *picture, SheenStats *stats)
 {
-    Rgb value = rgb_scale(rgb_mul(r->throughput, radiance), weight);
-    if (!rgb_finite(value)) {
-        ++stats->nonfinite_samples;
-        return;
-    }
-    film->color[r->pixel] = rgb_add(film->color[r->pixel], value);
-    film_add(film, SHEEN_AOV_DIRECT, r->pixel % work->width, r->pixel / work->width, value);
+    sheen_picture_add(picture, r->pixel, r->sample, rgb_scale(rgb_mul(r->throughput, radiance), r->weight),
+                      SHEEN_AOV_DIRECT, stats);
 }
 
 // Sends a ray on along the glossy part. What it sees is blurred: the pixel widens.
@@ -213,15 +222,15 @@ static bool add_point(const EyeRay *r, const DiffusePoint *point, bool lit, Visi
 }
 
 // A surface in full: all its delta lobes, a ray along the glossy part, light samples, and a point for the diffuse part.
-static bool see(const SheenWork *work, const EyeRay *r, const SeenSurface *s, int list, float weight, SheenFilm *film,
-                Visibility *v, SheenStats *stats)
+static bool see(const SheenWork *work, const EyeRay *r, const SeenSurface *s, int list, Picture *picture, Visibility *v,
+                SheenStats *stats)
 {
     unsigned classes = sheen_bsdf_classes(&s->bsdf);
     if ((classes & SHEEN_BSDF_DELTA) && !split(r, s, list, v)) return false;
     if ((classes & SHEEN_BSDF_GLOSSY) && !send_glossy(work, r, s, list, v)) return false;
-    if ((classes & SHEEN_BSDF_SMOOTH) && film) {
+    if ((classes & SHEEN_BSDF_SMOOTH) && picture) {
         Rgb L = sheen_glossy_lit(work, s, r->branch, r->pixel, r->sample, stats);
-        add_light(work, r, L, weight, film, stats);
+        add_light(r, L, picture, stats);
     }
     DiffusePoint point;
     if (!(classes & SHEEN_BSDF_DIFFUSE)) return true;
@@ -239,11 +248,11 @@ static Rgb found(const SheenWork *work, const EyeRay *r, const SurfacePoint *s)
     return s ? sheen_emitted(work->scene, s, wo) : sheen_environment(work->scene, r->ray.d);
 }
 
-static bool arrive(const SheenWork *work, const SheenEye *eye, EyeRay *r, const Hit *hit, int list, float weight,
-                   SheenFilm *film, Visibility *v, SheenStats *stats)
+static bool arrive(const SheenWork *work, const SheenEye *eye, EyeRay *r, const Hit *hit, int list, Picture *picture,
+                   Visibility *v, SheenStats *stats)
 {
     if (hit->shape == SHEEN_NONE) {
-        if (film) add_light(work, r, found(work, r, NULL), weight, film, stats);
+        if (picture) add_light(r, found(work, r, NULL), picture, stats);
         return true;
     }
     SeenSurface seen;
@@ -253,17 +262,17 @@ static bool arrive(const SheenWork *work, const SheenEye *eye, EyeRay *r, const 
     r->length += hit->t;
     r->blurred += r->blur * hit->t;
     r->footprint = sheen_eye_footprint(eye, r->length) + r->blurred;
-    if (film) {
+    if (picture) {
         Rgb emitted = found(work, r, s);
-        if (!rgb_is_black(emitted)) add_light(work, r, emitted, weight, film, stats);
-        if (r->depth == 0 && r->passages == 0) add_first_hit(work, r, hit, s, weight, film);
+        if (!rgb_is_black(emitted)) add_light(r, emitted, picture, stats);
+        if (r->depth == 0 && r->passages == 0) add_first_hit(work, r, hit, s, picture->film);
     }
     bool last = r->gathered && work->options.bounces == 0; // no light comes from another scattering
     DiffusePoint point;
     const SheenMaterial *lambertian = sheen_lambertian(work->scene, s);
     if (lambertian) return last || !sheen_lambertian_point(lambertian, s, wo, &point) || add_point(r, &point, false, v);
     sheen_seen_surface(work, wo, &seen);
-    if (!r->gathered && r->depth < SPLIT_DEPTH) return see(work, r, &seen, list, weight, film, v, stats);
+    if (!r->gathered && r->depth < SPLIT_DEPTH) return see(work, r, &seen, list, picture, v, stats);
     SheenSampler sampler = sampler_of(work, r);
     Ray ray;
     EyeRay next = *r;
@@ -276,14 +285,13 @@ static bool arrive(const SheenWork *work, const SheenEye *eye, EyeRay *r, const 
     return send(r, &ray, through, 0, &next, list, v);
 }
 
-bool sheen_visibility_trace(const SheenWork *work, const Tile *tile, uint32_t first, uint32_t n, SheenFilm *film,
-                            Visibility *v, SheenStats *stats)
+bool sheen_visibility_trace(const SheenWork *work, const Tile *tile, SampleRange range, Picture *picture, Visibility *v,
+                            SheenStats *stats)
 {
     v->n_points = 0;
     SheenEye eye = sheen_eye(work->camera, work->width, work->height);
-    if (!push_camera_rays(work, &eye, tile, first, n, v)) return false;
+    if (!push_camera_rays(work, &eye, tile, range, v)) return false;
     stats->rays_camera += v->n_rays[0];
-    float weight = 1.0f / (float)work->options.spp;
     for (int list = 0, depth = 0; v->n_rays[list] > 0; list ^= 1, ++depth) {
         size_t n_rays = v->n_rays[list];
         if (!reserve_batch(v, n_rays)) return false;
@@ -291,10 +299,8 @@ bool sheen_visibility_trace(const SheenWork *work, const Tile *tile, uint32_t fi
         sheen_accel_intersect_many(work->accel, depth ? SHEEN_INCOHERENT : SHEEN_COHERENT, n_rays, v->batch, v->hits);
         if (depth) stats->rays_specular += n_rays;
         v->n_rays[list ^ 1] = 0;
-        for (size_t i = 0; i < n_rays; ++i) {
-            EyeRay *r = &v->rays[list][i];
-            if (!arrive(work, &eye, r, &v->hits[i], list ^ 1, weight * r->weight, film, v, stats)) return false;
-        }
+        for (size_t i = 0; i < n_rays; ++i)
+            if (!arrive(work, &eye, &v->rays[list][i], &v->hits[i], list ^ 1, picture, v, stats)) return false;
     }
     return true;
 }

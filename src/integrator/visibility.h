@@ -4,6 +4,7 @@
 #define SHEEN_INTEGRATOR_VISIBILITY_H
 
 #include "integrator/glossy.h"
+#include "integrator/picture.h"
 
 /** A point that a pixel sees. */
 typedef struct ShadingPoint {
@@ -42,6 +43,12 @@ typedef struct EyeRay {
     GlossyOrigin origin;
 } EyeRay;
 
+/** Samples of pixels that are traced together. */
+typedef struct SampleRange {
+    uint32_t first, n;    // [first, first + n) of each pixel ...
+    const uint32_t *ends; // [pixels] ... below its own end; NULL: all of them
+} SampleRange;
+
 /** Buffers and result of one worker. */
 typedef struct Visibility {
     ShadingPoint *points;
@@ -57,15 +64,15 @@ typedef struct Visibility {
 void sheen_visibility_free(Visibility *v);
 
 /**
- * Traces samples [first, first + n) of each pixel of a tile. v->points then holds what they see, sample by sample.
+ * Traces samples of each pixel of a tile. v->points then holds what they see, sample by sample.
  * At masks what passes and what does not are both followed, at glass and below coats all ways three times, after that
  * one of them is chosen. Of a glossy reflection one ray is followed; behind it, as behind three branchings, surfaces
  * are what sheen_step makes of them.
- * @param film  emitted light, the sky and what light samples find on surfaces that are not Lambert's alone are added
- *              to the colour, weighted by 1 / spp, and first hits to the layers; NULL to find the points only
+ * @param picture  emitted light, the sky and what light samples find on surfaces that are not Lambert's alone are
+ *                 added to the colour, and first hits to the layers; NULL to find the points only
  * @return false when out of memory
  */
-bool sheen_visibility_trace(const SheenWork *work, const Tile *tile, uint32_t first, uint32_t n, SheenFilm *film,
-                            Visibility *v, SheenStats *stats);
+bool sheen_visibility_trace(const SheenWork *work, const Tile *tile, SampleRange range, Picture *picture, Visibility *v,
+                            SheenStats *stats);
 
 #endif

@@ -5,6 +5,7 @@ SheenOptions sheen_options_default(void)
 {
     return (SheenOptions){
         .spp = 16,
+        .noise = 0.03f,
         .bounces = 8,
         .accuracy = 0.2f,
         .gather_rays = 400,

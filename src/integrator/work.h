@@ -21,6 +21,7 @@ typedef enum SheenGradients { SHEEN_GRADIENTS_STRATIFIED, SHEEN_GRADIENTS_NONE }
 typedef struct SheenOptions {
     uint32_t spp;           // samples per pixel
     uint32_t light_samples; // for each shading point; 0: 1 of one light, 2 of each of up to 4, else 4; 1 for `path`
+    float noise;            // relative standard error that a pixel gets more samples for; not of `path`; 0: never
     uint32_t bounces;       // indirect bounces; 0 is direct light only
     double time_limit;      // seconds, path only; 0 for none
     float accuracy;         // a: a record is used where w > 1/a
@@ -40,8 +41,9 @@ typedef struct SheenStats {
     uint64_t records;      // of the cache that the picture reads
     uint64_t deep_records; // of the light beyond the first bounce
     uint64_t cache_bytes;
-    uint32_t passes; // waves of the fill; passes of `path`
-    uint32_t spp_done;
+    uint32_t passes;   // waves of the fill; passes of `path`
+    uint32_t spp_done; // samples of each pixel, at least
+    double spp_mean;   // in the mean
     uint64_t nonfinite_samples;
 } SheenStats;
 

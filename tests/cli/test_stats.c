@@ -64,7 +64,7 @@ static void check_keys(const json_t *stats)
     static const char *const rays[] = {"camera", "shadow", "gather", "path", "specular"};
     static const char *const records[] = {"irradiance", "radiance", "light_vector", "reused", "new", "deleted"};
     static const char *const counters[] = {"threads", "seed",     "cache_bytes",      "peak_rss_bytes",
-                                           "passes",  "spp_done", "nonfinite_samples"};
+                                           "passes",  "spp_done", "spp_mean", "nonfinite_samples"};
     text(stats, "version");
     text(stats, "scene");
     assert_true(json_is_object(json_object_get(stats, "options")));

@@ -168,7 +168,12 @@ static void look_down(AddFn *add, Kit *kit, Visibility *v, SheenFilm **film)
     Tile tile = sheen_tile(&kit->work, 0);
     SheenStats stats = {0};
     *v = (Visibility){0};
-    assert_true(sheen_visibility_trace(&kit->work, &tile, 0, 4, film ? *film : NULL, v, &stats));
+    Picture picture = {0};
+    if (film) assert_true(sheen_picture_create(&kit->work, *film, &picture));
+    assert_true(
+        sheen_visibility_trace(&kit->work, &tile, (SampleRange){0, 4, NULL}, film ? &picture : NULL, v, &stats));
+    if (film) sheen_picture_average(&picture);
+    sheen_picture_free(&picture);
     assert_int_equal(stats.rays_camera, 16 * 16 * 4);
     assert_int_equal(stats.nonfinite_samples, 0);
 }
@@ -297,7 +302,8 @@ static void test_lossless_glass_conserves(void **state)
     look_end(&kit, &v);
 }
 
-// Emitters and the sky go to the film: what is seen, weighted by the samples, and no shading point is made of the sky.
+// Emitters and the sky go to the film: what is seen, in the mean over the samples, and no shading point is made of the
+// sky.
 static void test_film_takes_what_shines(void **state)
 {
     (void)state;
@@ -316,7 +322,11 @@ static void test_film_takes_what_shines(void **state)
     Visibility v = {0};
     SheenStats stats = {0};
     Tile tile = sheen_tile(&kit.work, 0);
-    assert_true(sheen_visibility_trace(&kit.work, &tile, 0, 4, film, &v, &stats));
+    Picture picture;
+    assert_true(sheen_picture_create(&kit.work, film, &picture));
+    assert_true(sheen_visibility_trace(&kit.work, &tile, (SampleRange){0, 4, NULL}, &picture, &v, &stats));
+    sheen_picture_average(&picture);
+    sheen_picture_free(&picture);
     assert_int_equal(v.n_points, 0); // the lamp reflects nothing
     for (uint32_t i = 0; i < 256; ++i) {
         Rgb expected = i % 16 < 8 ? rgb(3.0f, 2.0f, 1.0f) : rgb_gray(0.5f);
