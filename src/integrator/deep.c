@@ -26,7 +26,7 @@ static const float cell_per_distance = 0.2f;
 
 /** What a stratum of a deep gather saw. */
 typedef struct DeepCell {
-    Vec3 p, n, ng;  // the hit's vertex; p is off the surface, where rays leave
+    Vec3 p, n, ng;  // the hit's vertex; p is off the surface, where rays leave; of the sky, where it shines in
     Rgb weight;     // radiance per irradiance there; black without vertex
     Rgb sky;        // radiance of the sky and of caustics
     Rgb direct;     // weight times direct irradiance
@@ -151,6 +151,13 @@ static DeepCell *cells_of(const SheenDeep *d, uint32_t record)
     return d->cells + (size_t)record * strata_count(deep_strata);
 }
 
+// Where the sky that a stratum saw shines into the scene's box: near the window, where there is one.
+static Vec3 shines_in(const SheenDeep *d, uint32_t record, const Hemisphere *h, size_t cell)
+{
+    Vec3 from = d->points[record].p, along = frame_to_world(&h->frame, h->directions[cell]);
+    return v3_mad(from, bounds_exit(&d->work->scene->bounds, from, along), along);
+}
+
 static void gather_task(void *user, size_t item, unsigned worker)
 {
     DeepTask *t = user;
@@ -162,7 +169,9 @@ static void gather_task(void *user, size_t item, unsigned worker)
     sheen_hemisphere_add_caustics(d->work, &d->points[record], h, &t->stats[worker]);
     DeepCell *cells = cells_of(d, record);
     for (size_t i = 0; i < h->cells; ++i) {
-        cells[i] = (DeepCell){.sky = h->L[i], .distance = h->distance[i]};
+        cells[i] = (DeepCell){.p = h->specular[i] ? d->points[record].p : shines_in(d, record, h, i),
+                              .sky = h->L[i],
+                              .distance = h->distance[i]};
         h->L[i] = rgb_gray(0.0f);
     }
     sheen_hemisphere_direct(d->work, 0, 1, h, &t->stats[worker]);
@@ -324,10 +333,11 @@ static void find_hot_spots(SheenDeep *d, const Rgb E[])
         for (unsigned i = 0; i < DEEP_CELLS; ++i) sum += L[i] = rgb_luminance(cell_radiance(&cells[i], 1, E, r));
         for (unsigned i = 0; i < DEEP_CELLS; ++i) {
             const DeepCell *c = &cells[i];
-            if (!(DEEP_CELLS * L[i] > times_mean * sum) || rgb_is_black(c->weight)) continue;
+            if (!(DEEP_CELLS * L[i] > times_mean * sum)) continue;
             if (L[i] < times_neighbors * neighbors_mean(L, i)) continue;
             float distance = v3_length(v3_sub(c->p, d->points[r].p));
-            if (fabsf(distance - c->distance) < 0.01f * distance) sheen_hot_spots_add(&d->hot, c->p, distance, L[i]);
+            bool straight = isinf(c->distance) || fabsf(distance - c->distance) < 0.01f * distance;
+            if (straight && distance > 0.0f) sheen_hot_spots_add(&d->hot, c->p, distance, L[i]);
         }
     }
 }

@@ -18,7 +18,7 @@ typedef struct HotSpot {
     uint32_t hits;
 } HotSpot;
 
-enum { SHEEN_HOT_SPOTS_MAX = 256, SHEEN_CONES_MAX = 16 };
+enum { SHEEN_HOT_SPOTS_MAX = 256, SHEEN_CONES_MAX = 48 };
 
 typedef struct HotSpots {
     uint32_t n;

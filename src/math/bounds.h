@@ -35,4 +35,15 @@ static inline float bounds_radius(const Bounds *b)
     return bounds_is_empty(b) ? 0.0f : 0.5f * v3_length(v3_sub(b->hi, b->lo));
 }
 
+/** @return distance in units of d at which a ray from p along d leaves the box for good; 0 when it misses it. */
+static inline float bounds_exit(const Bounds *b, Vec3 p, Vec3 d)
+{
+    Vec3 far = v3(d.x > 0.0f ? b->hi.x : b->lo.x, d.y > 0.0f ? b->hi.y : b->lo.y, d.z > 0.0f ? b->hi.z : b->lo.z);
+    float t = INFINITY;
+    if (d.x != 0.0f) t = minf(t, (far.x - p.x) / d.x);
+    if (d.y != 0.0f) t = minf(t, (far.y - p.y) / d.y);
+    if (d.z != 0.0f) t = minf(t, (far.z - p.z) / d.z);
+    return t > 0.0f && isfinite(t) ? t : 0.0f;
+}
+
 #endif
