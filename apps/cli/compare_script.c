@@ -11,7 +11,7 @@ const char *const compare_style[] = {
     "body { font: 15px/1.4 system-ui, sans-serif; margin: 1.5em; background: #1c1c1e; color: #e8e8ea; }",
     "h1 { font-size: 1.3em; } h2 { font-size: 1.05em; margin: 1.5em 0 .5em; }",
     "h1, h2, tr > :first-child { overflow-wrap: anywhere; }",
-    ".wide { overflow-x: auto; } table { border-collapse: collapse; }",
+    ".wide { overflow-x: auto; margin: 1em 0; } table { border-collapse: collapse; }",
     "td, th { padding: .25em .8em; border-bottom: 1px solid #444; text-align: right; white-space: nowrap; }",
     "td { font-variant-numeric: tabular-nums; }",
     "tr > :first-child { text-align: left; white-space: normal; min-width: 8em; padding-left: 0; }",

@@ -83,6 +83,7 @@ def row(name, entry, integrator, first):
 
 
 def write_references(book):
+    """The list beside the references."""
     text = ("# Converged pictures for the gallery\n\n"
             f"By path tracing (`--integrator path --size {kept.WIDTH}x{kept.HEIGHT} --filter box`, all else default),\n"
             "two halves of each scene with different seeds, so that their difference tells the noise. `bench/gallery\n"
@@ -93,6 +94,7 @@ def write_references(book):
             "| --- | --- | --- | --- |\n")
     for name, entry in sorted(book.items()):
         text += f"| {name} | {entry['spp']:,} | {entry['seconds']:.0f} | {scientific(entry['noise'])} |\n"
+    os.makedirs(kept.FOLDER, exist_ok=True)
     with open(os.path.join(kept.FOLDER, "README.md"), "w", encoding="utf-8") as file:
         file.write(text)
 

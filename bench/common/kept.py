@@ -28,6 +28,7 @@ def load(path):
 
 def store(path, data):
     """Whole or not at all, one scene a line, in order, so that changes are easy to see."""
+    os.makedirs(os.path.dirname(path), exist_ok=True)
     lines = [f"{json.dumps(name)}: {json.dumps(data[name])}" for name in sorted(data)]
     with open(path + ".new", "w", encoding="utf-8") as file:
         file.write("{\n" + ",\n".join(lines) + "\n}\n")
@@ -77,6 +78,7 @@ def refine(scene, seconds, most, anew):
         entry["seconds"] = round(entry["seconds"] + max(took - start, 0), 1)
         found.append(picture)
     entry.update(spp=entry["spp"] + spp, passes=entry["passes"] + 1)
+    os.makedirs(FOLDER, exist_ok=True)
     for half, path in enumerate(paths(scene.name)):
         texts = {"scene": scene.shown, "integrator": "path", "spp": entry["spp"], "half": "ab"[half]}
         exr.write(path, found[half], texts, BITS)
