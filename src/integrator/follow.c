@@ -10,12 +10,13 @@ bool sheen_set_point(const SurfacePoint *s, bool front, Rgb reflectance, Diffuse
     return !rgb_is_black(reflectance);
 }
 
-bool sheen_lambertian_point(const SheenMaterial *material, const SurfacePoint *s, Vec3 wo, DiffusePoint *out)
+bool sheen_lambertian_point(const SheenScene *scene, const SheenMaterial *material, const SurfacePoint *s, Vec3 wo,
+                            DiffusePoint *out)
 {
     bool front = v3_dot(wo, s->ng) >= 0.0f;
     if (!front && !material->two_sided) return false;
     const SheenTexture *t = &material->reflectance;
-    Rgb c = t->kind == SHEEN_TEXTURE_CONSTANT ? t->value : sheen_texture_eval(t, s->uv);
+    Rgb c = t->kind == SHEEN_TEXTURE_CONSTANT ? t->value : sheen_surface_texture(scene, t, s);
     return sheen_set_point(s, front, rgb_unit(c), out);
 }
 
@@ -82,7 +83,7 @@ void sheen_follow(const SheenWork *work, const Ray *ray, const Hit *hit, SheenSa
         out->emitted = sheen_emitted(work->scene, &s, wo);
         const SheenMaterial *lambertian = sheen_lambertian(work->scene, &s);
         if (lambertian) {
-            out->scatters = sheen_lambertian_point(lambertian, &s, wo, &out->point);
+            out->scatters = sheen_lambertian_point(work->scene, lambertian, &s, wo, &out->point);
             return;
         }
         Bsdf bsdf;

@@ -29,7 +29,8 @@ static inline const SheenMaterial *sheen_lambertian(const SheenScene *scene, con
 }
 
 /** The same on a Lambertian surface seen along wo (unit, toward the viewer). @return false when it is black. */
-bool sheen_lambertian_point(const SheenMaterial *material, const SurfacePoint *s, Vec3 wo, DiffusePoint *out);
+bool sheen_lambertian_point(const SheenScene *scene, const SheenMaterial *material, const SurfacePoint *s, Vec3 wo,
+                            DiffusePoint *out);
 
 /** What becomes of a ray at a surface. */
 typedef enum SheenStep {

@@ -270,7 +270,9 @@ static bool arrive(const SheenWork *work, const SheenEye *eye, EyeRay *r, const 
     bool last = r->gathered && work->options.bounces == 0; // no light comes from another scattering
     DiffusePoint point;
     const SheenMaterial *lambertian = sheen_lambertian(work->scene, s);
-    if (lambertian) return last || !sheen_lambertian_point(lambertian, s, wo, &point) || add_point(r, &point, false, v);
+    if (lambertian)
+        return last || !sheen_lambertian_point(work->scene, lambertian, s, wo, &point) ||
+               add_point(r, &point, false, v);
     sheen_seen_surface(work, wo, &seen);
     if (!r->gathered && r->depth < SPLIT_DEPTH) return see(work, r, &seen, list, picture, v, stats);
     SheenSampler sampler = sampler_of(work, r);

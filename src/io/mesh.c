@@ -80,7 +80,9 @@ SheenMesh sheen_mesh_finish(const MeshData *m)
                        .p = m->p,
                        .n = m->n,
                        .uv = m->uv,
-                       .triangles = (const uint32_t(*)[3])m->triangles};
+                       .triangles = (const uint32_t(*)[3])m->triangles,
+                       .color = m->color,
+                       .face_color = m->face_color};
 }
 
 bool sheen_reserve(void **array, uint32_t *capacity, uint64_t needed, size_t item_size)

@@ -14,6 +14,7 @@ typedef struct MeshData {
     Vec3 *n;                  // NULL when there are none
     Vec2 *uv;                 // NULL when there are none; v grows upward
     uint32_t (*triangles)[3]; // indices are in range
+    Rgb *color, *face_color;  // of vertices, of triangles; NULL when there are none
 } MeshData;
 
 /** Allocates positions and triangles, and normals and uv as asked. @return false when out of memory. */
@@ -44,7 +45,8 @@ bool sheen_reserve(void **array, uint32_t *capacity, uint64_t needed, size_t ite
 // ---- readers ----------------------------------------------------------------------------------------------------
 
 /**
- * Reads Wavefront OBJ: v, vt, vn and f; everything else is skipped. Polygons are cut (io/polygon.h).
+ * Reads Wavefront OBJ: v (with a colour where six numbers stand), vt, vn and f; everything else is skipped. Polygons
+ * are cut (io/polygon.h).
  * @param name  stands for the file in messages
  * Errors: SHEEN_ERR_PARSE (`FILE:LINE: ...`: a missing number, a vertex index out of range), SHEEN_ERR_NOMEM. Normals
  * and texture coordinates that are not there are a warning.
@@ -54,7 +56,8 @@ SHEEN_NODISCARD SheenStatus sheen_obj_parse(const char *text, size_t size, const
 
 /**
  * Reads PLY, ASCII or binary of either byte order: x y z, nx ny nz, (u v | s t | texture_u texture_v | texture_s
- * texture_t) of `vertex`, and vertex_indices or vertex_index of `face`; everything else is skipped, vertex colours too.
+ * texture_t) of `vertex`, vertex_indices or vertex_index of `face`, and (r g b | red green blue) of both, integers
+ * over their type's largest value; everything else is skipped.
  * Polygons are cut (io/polygon.h). Errors: SHEEN_ERR_PARSE (`FILE: ...`, with a line where there is one),
  * SHEEN_ERR_NOMEM.
  */
@@ -62,7 +65,7 @@ SHEEN_NODISCARD SheenStatus sheen_ply_parse(const char *data, size_t size, const
                                             const SheenLog *log, MeshData *out);
 
 /**
- * Reads one mesh of a file of Mitsuba's serialized meshes, version 3 or 4; vertex colours are skipped.
+ * Reads one mesh of a file of Mitsuba's serialized meshes, version 3 or 4.
  * @param index         which of the file's meshes, from 0
  * @param face_normals  whether the mesh is to be shaded flat
  * Errors: SHEEN_ERR_PARSE and SHEEN_ERR_UNSUPPORTED (`FILE: ...`), SHEEN_ERR_NOMEM.

@@ -139,12 +139,14 @@ static bool split_vertices(const Work *w, SheenArena *arena, MeshData *out, uint
         }
         made[c] = v;
     }
-    *out = (MeshData){.n_vertices = n, .n_triangles = w->m->n_triangles};
+    *out = (MeshData){.n_vertices = n, .n_triangles = w->m->n_triangles, .face_color = w->m->face_color};
     bool ok = normal && made && sheen_mesh_alloc(arena, out, true, w->m->uv != NULL);
+    if (ok && w->m->color) ok = (out->color = SHEEN_ARENA_NEW(arena, Rgb, n)) != NULL;
     for (uint32_t i = 0; ok && i < n; ++i) {
         out->p[i] = w->m->p[source[i]];
         out->n[i] = normal[i];
         if (out->uv) out->uv[i] = w->m->uv[source[i]];
+        if (out->color) out->color[i] = w->m->color[source[i]];
     }
     if (ok) memcpy(out->triangles, made, (size_t)n_corners * sizeof *made);
     free(normal);

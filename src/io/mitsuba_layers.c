@@ -143,6 +143,10 @@ void sheen_mi_mask(Mitsuba *m, SheenXml *e, SheenMaterial *out)
 {
     out->kind = SHEEN_MATERIAL_MASK;
     out->weight = sheen_mi_factor(m, e, "opacity", 0.5f, 0.0f, 1.0f);
+    if (sheen_texture_is_of_mesh(&out->weight)) { // shadow rays know the uv of what they pass, and no more
+        sheen_xml_warn(m->log, e, "an opacity from a mesh's colours is not supported: 0.5 stands in");
+        out->weight = sheen_texture_constant(out->weight.value);
+    }
     read_nested(m, e, out);
 }
 

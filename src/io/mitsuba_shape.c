@@ -5,6 +5,7 @@
 // vertices, and what it takes for the front side (of lights and one-sided materials) is the side of the shading normal.
 // So meshes with normals are given the vertex order that agrees with them, and meshes without take the side that the
 // mirrored order gives. A mirrored sphere is turned inside out, a mirrored disk is not.
+#include "image/image.h"
 #include "image/whole_file.h"
 #include "io/mesh_smooth.h"
 #include "io/mitsuba.h"
@@ -50,6 +51,19 @@ static bool place_mesh(Mitsuba *m, SheenXml *e, MeshData *mesh, bool flat, Sheen
     return true;
 }
 
+/** Up to version 0.6 colours are in the sRGB curve unless a mesh says otherwise, from version 2 on linear. */
+static void decode_colors(Mitsuba *m, const SheenXml *e, MeshData *mesh)
+{
+    if (!sheen_mi_bool(m, e, "srgb", m->version < 2)) return;
+    Rgb *colors[] = {mesh->color, mesh->face_color};
+    const uint32_t n[] = {mesh->n_vertices, mesh->n_triangles};
+    for (int k = 0; k < 2; ++k)
+        for (uint32_t i = 0; colors[k] && i < n[k]; ++i) {
+            Rgb c = colors[k][i];
+            colors[k][i] = rgb(sheen_srgb_decode(c.r), sheen_srgb_decode(c.g), sheen_srgb_decode(c.b));
+        }
+}
+
 typedef enum MeshFormat { MESH_OBJ, MESH_PLY, MESH_SERIALIZED } MeshFormat;
 
 /** Reads the file that an element names. @param face_normals  whether the file asks for them */
@@ -86,6 +100,7 @@ static bool read_mesh_file(Mitsuba *m, SheenXml *e, MeshFormat format, SheenShap
     // the other formats.
     if (sheen_mi_bool(m, e, "flip_tex_coords", v_is_up) != v_is_up) v_is_up = !v_is_up;
     if (!v_is_up) flip_v(&mesh);
+    decode_colors(m, e, &mesh);
     face_normals = sheen_mi_bool(m, e, "face_normals", face_normals);
     if (face_normals) mesh.n = NULL;
     sheen_mi_ignore(e, "collapse shape_index");

@@ -148,6 +148,22 @@ static SheenTexture read_grid(Mitsuba *m, const SheenXml *e)
     return t;
 }
 
+/** Colours of the mesh: gray where a mesh has none, as Mitsuba has no answer to that. */
+static SheenTexture read_mesh_attribute(Mitsuba *m, const SheenXml *e)
+{
+    SheenTexture t = sheen_texture_constant(rgb_gray(0.5f));
+    const char *name = sheen_mi_string(m, e, "name", "vertex_color");
+    if (sheen_mi_same(name, "vertex_color"))
+        t.kind = SHEEN_TEXTURE_VERTEX_COLOR;
+    else if (sheen_mi_same(name, "face_color"))
+        t.kind = SHEEN_TEXTURE_FACE_COLOR;
+    else if (!e->warned)
+        sheen_xml_warn(m->log, e, "the mesh attribute '%s' is not supported: gray 0.5 stands in", name);
+    float scale = (float)sheen_mi_float(m, e, "scale", 1.0);
+    sheen_texture_scale(&t, rgb_gray(scale));
+    return t;
+}
+
 static SheenTexture read_texture(Mitsuba *m, SheenXml *e);
 
 /** Another texture times a factor. */
@@ -179,6 +195,11 @@ static SheenTexture read_texture(Mitsuba *m, SheenXml *e)
         t = read_checkerboard(m, e);
     } else if (sheen_mi_same(type, "gridtexture")) {
         t = read_grid(m, e);
+    } else if (sheen_mi_same(type, "mesh_attribute")) {
+        t = read_mesh_attribute(m, e);
+    } else if (sheen_mi_same(type, "vertexcolors")) { // version 0.5
+        t = sheen_texture_constant(rgb_gray(0.5f));
+        t.kind = SHEEN_TEXTURE_VERTEX_COLOR;
     } else if (sheen_mi_same(type, "scale")) {
         t = read_scale(m, e);
     } else {

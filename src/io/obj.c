@@ -26,6 +26,7 @@ typedef struct Reader {
     const SheenLog *log;
     uint32_t line;
     Array p, uv, n;  // Vec3, Vec2, Vec3 as in the file
+    Array colors;    // Rgb of the positions, none as long as no position has one
     Array vertices;  // Corner: one for each combination that occurs
     Array triangles; // uint32_t[3]
     Array face;      // uint32_t: vertices of the polygon that is being read
@@ -117,6 +118,22 @@ static SheenStatus read_vec3(Reader *r, Array *to)
     if (s) return s;
     Vec3 v = v3(c[0], c[1], c[2]);
     return push(to, &v, sizeof v) ? SHEEN_OK : no_memory(r);
+}
+
+/** A position, and after it perhaps a colour; positions without are white in a file that has some. */
+static SheenStatus read_position(Reader *r)
+{
+    float c[6] = {0, 0, 0, -1, -1, -1};
+    SheenStatus s = read_floats(r, 3, 6, c);
+    if (s) return s;
+    Vec3 p = v3(c[0], c[1], c[2]);
+    const Rgb white = rgb_gray(1.0f);
+    bool colored = c[5] >= 0.0f;
+    Rgb color = colored ? rgb(c[3], c[4], c[5]) : white;
+    while (colored && r->colors.n < r->p.n)
+        if (!push(&r->colors, &white, sizeof white)) return no_memory(r);
+    if ((colored || r->colors.n) && !push(&r->colors, &color, sizeof color)) return no_memory(r);
+    return push(&r->p, &p, sizeof p) ? SHEEN_OK : no_memory(r);
 }
 
 static SheenStatus read_uv(Reader *r)
@@ -362,7 +379,7 @@ static SheenStatus read_statement(Reader *r)
     while (r->at < r->end && (unsigned char)*r->at > ' ') ++r->at;
     size_t length = (size_t)(r->at - word);
     if (length == 0 || *word == '#') return SHEEN_OK;
-    if (is_word(word, length, "v")) return read_vec3(r, &r->p);
+    if (is_word(word, length, "v")) return read_position(r);
     if (is_word(word, length, "vn")) return read_vec3(r, &r->n);
     if (is_word(word, length, "vt")) return read_uv(r);
     if (is_word(word, length, "f") || is_word(word, length, "fo")) return read_face(r);
@@ -392,9 +409,11 @@ static SheenStatus collect(const Reader *r, MeshData *out)
 {
     *out = (MeshData){.n_vertices = r->vertices.n, .n_triangles = r->triangles.n};
     if (!sheen_mesh_alloc(r->arena, out, r->has_n, r->has_uv)) return no_memory(r);
+    if (r->colors.n && !(out->color = SHEEN_ARENA_NEW(r->arena, Rgb, r->vertices.n))) return no_memory(r);
     const Corner *c = r->vertices.data;
     for (uint32_t i = 0; i < r->vertices.n; ++i, ++c) {
         out->p[i] = ((const Vec3 *)r->p.data)[c->p];
+        if (out->color) out->color[i] = ((const Rgb *)r->colors.data)[c->p];
         if (c->uv != SHEEN_NONE) out->uv[i] = ((const Vec2 *)r->uv.data)[c->uv];
         if (c->n != SHEEN_NONE) out->n[i] = v3_normalize(((const Vec3 *)r->n.data)[c->n]);
     }
@@ -427,6 +446,7 @@ static SheenStatus read_file(Reader *r, ObjFile *out)
     if (!s) s = collect(r, &out->mesh);
     if (!s && r->parts) s = collect_parts(r, out);
     free(r->p.data);
+    free(r->colors.data);
     free(r->uv.data);
     free(r->n.data);
     free(r->vertices.data);

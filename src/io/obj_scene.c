@@ -185,13 +185,15 @@ static SheenStatus add_shape(Reader *r, const Part *part, const uint32_t next[],
     m.p = SHEEN_ARENA_NEW(r->arena, Vec3, (size_t)m.n_vertices + 1);
     m.n = has_n ? SHEEN_ARENA_NEW(r->arena, Vec3, m.n_vertices) : NULL;
     m.uv = all->uv ? SHEEN_ARENA_NEW(r->arena, Vec2, m.n_vertices) : NULL;
-    bool ok = m.p && (m.n || !has_n) && (m.uv || !all->uv);
+    m.color = all->color ? SHEEN_ARENA_NEW(r->arena, Rgb, m.n_vertices) : NULL;
+    bool ok = m.p && (m.n || !has_n) && (m.uv || !all->uv) && (m.color || !all->color);
     for (uint32_t i = 0; i < m.n_vertices; ++i) {
         map[source[i]] = SHEEN_NONE;
         if (!ok) continue;
         m.p[i] = all->p[source[i]];
         if (m.n) m.n[i] = all->n[source[i]];
         if (m.uv) m.uv[i] = all->uv[source[i]];
+        if (m.color) m.color[i] = all->color[source[i]];
     }
     free(source);
     if (ok && !has_n && part->smooth) ok = sheen_mesh_smooth_edges(r->arena, &m, groups, SHEEN_PI);

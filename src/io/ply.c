@@ -15,7 +15,15 @@ typedef enum Format { ASCII, LITTLE_ENDIAN_BYTES, BIG_ENDIAN_BYTES } Format;
 static const unsigned type_sizes[N_TYPES] = {1, 1, 2, 2, 4, 4, 4, 8};
 
 /** What a property of a vertex or face means to us. */
-typedef enum Role { SKIP, POSITION, NORMAL = POSITION + 3, TEXTURE = NORMAL + 3, INDICES = TEXTURE + 2 } Role;
+typedef enum Role {
+    SKIP,
+    POSITION,
+    NORMAL = POSITION + 3,
+    TEXTURE = NORMAL + 3,
+    COLOR = TEXTURE + 2,
+    FACE_COLOR = COLOR + 3,
+    INDICES = FACE_COLOR + 3
+} Role;
 
 typedef struct Property {
     Type type, count_type;
@@ -40,6 +48,9 @@ typedef struct Reader {
     uint32_t n_elements, n_properties;
     uint32_t (*triangles)[3]; // from malloc
     uint32_t n_triangles, triangle_capacity;
+    Rgb *face_colors; // from malloc, of the triangles; unused unless the file has them
+    uint32_t face_color_capacity;
+    bool has_face_colors;
     uint32_t *face; // from malloc: the polygon that is being read, and its corners' places
     Vec3 *corners;
     uint32_t face_capacity, corner_capacity;
@@ -106,6 +117,9 @@ static int role_of(const Element *e, Word name, bool list)
                  {"s", TEXTURE},         {"t", TEXTURE + 1},        {"texture_u", TEXTURE}, {"texture_v", TEXTURE + 1},
                  {"texture_s", TEXTURE}, {"texture_t", TEXTURE + 1}};
     if (e->face && list && (is(name, "vertex_indices") || is(name, "vertex_index"))) return INDICES;
+    static const char *const colors[] = {"r", "g", "b", "red", "green", "blue"};
+    for (int i = 0; (e->vertex || e->face) && !list && i < 6; ++i)
+        if (is(name, colors[i])) return (e->vertex ? COLOR : FACE_COLOR) + i % 3;
     for (size_t i = 0; e->vertex && !list && i < sizeof roles / sizeof *roles; ++i)
         if (is(name, roles[i].name)) return roles[i].role;
     return SKIP;
@@ -315,19 +329,56 @@ static SheenStatus read_face(Reader *r, const Property *p, const MeshData *mesh)
     return s ? s : add_polygon(r, n, mesh->p);
 }
 
+/** What the largest value of a colour's type stands for 1. */
+static double color_scale(Type type)
+{
+    static const double largest[N_TYPES] = {127.0, 255.0, 32767.0, 65535.0, 2147483647.0, 4294967295.0, 1.0, 1.0};
+    return 1.0 / largest[type];
+}
+
+static bool is_color(int role)
+{
+    return role >= COLOR && role < FACE_COLOR + 3;
+}
+
+/** One value of a vertex or face into value[role]. */
+static SheenStatus read_role(Reader *r, const Property *p, float value[INDICES])
+{
+    double v = 0.0;
+    SheenStatus s = p->list ? skip_list(r, p) : read_value(r, p->type, &v);
+    if (!s) value[p->role] = (float)(is_color(p->role) ? v * color_scale(p->type) : v);
+    return s;
+}
+
+/** A face and the colour of all triangles that it is cut into. */
+static SheenStatus read_whole_face(Reader *r, const Element *e, const MeshData *mesh)
+{
+    uint32_t first = r->n_triangles;
+    float value[INDICES] = {0};
+    for (uint32_t j = 0; j < e->n; ++j) {
+        const Property *p = &r->properties[e->first + j];
+        SheenStatus s = p->role == INDICES ? read_face(r, p, mesh) : read_role(r, p, value);
+        if (s) return s;
+    }
+    if (!r->has_face_colors) return SHEEN_OK;
+    if (!sheen_reserve((void **)&r->face_colors, &r->face_color_capacity, r->n_triangles, sizeof *r->face_colors))
+        return no_memory(r);
+    for (uint32_t i = first; i < r->n_triangles; ++i)
+        r->face_colors[i] = rgb(value[FACE_COLOR], value[FACE_COLOR + 1], value[FACE_COLOR + 2]);
+    return SHEEN_OK;
+}
+
 static SheenStatus read_vertex(Reader *r, const Element *e, MeshData *out, uint32_t index)
 {
     float value[INDICES] = {0};
     for (uint32_t j = 0; j < e->n; ++j) {
-        const Property *p = &r->properties[e->first + j];
-        double v = 0.0;
-        SheenStatus s = p->list ? skip_list(r, p) : read_value(r, p->type, &v);
+        SheenStatus s = read_role(r, &r->properties[e->first + j], value);
         if (s) return s;
-        value[p->role] = (float)v;
     }
     out->p[index] = v3(value[POSITION], value[POSITION + 1], value[POSITION + 2]);
     if (out->n) out->n[index] = v3_normalize(v3(value[NORMAL], value[NORMAL + 1], value[NORMAL + 2]));
     if (out->uv) out->uv[index] = v2(value[TEXTURE], value[TEXTURE + 1]);
+    if (out->color) out->color[index] = rgb(value[COLOR], value[COLOR + 1], value[COLOR + 2]);
     return SHEEN_OK;
 }
 
@@ -341,12 +392,14 @@ static SheenStatus read_elements(Reader *r, MeshData *out)
                 s = read_vertex(r, e, out, k);
                 continue;
             }
+            if (e->face) {
+                s = read_whole_face(r, e, out);
+                continue;
+            }
             for (uint32_t j = 0; !s && j < e->n; ++j) {
                 const Property *p = &r->properties[e->first + j];
                 double ignored;
-                s = p->role == INDICES ? read_face(r, p, out)
-                    : p->list          ? skip_list(r, p)
-                                       : read_value(r, p->type, &ignored);
+                s = p->list ? skip_list(r, p) : read_value(r, p->type, &ignored);
             }
         }
     }
@@ -373,12 +426,19 @@ static SheenStatus read_mesh(Reader *r, SheenArena *arena, MeshData *out)
     for (uint32_t i = 0; i < r->n_elements; ++i)
         if (r->elements[i].vertex) m.n_vertices = (uint32_t)r->elements[i].count;
     if (!sheen_mesh_alloc(arena, &m, has_roles(r, NORMAL, 3), has_roles(r, TEXTURE, 2))) return no_memory(r);
+    if (has_roles(r, COLOR, 3) && !(m.color = SHEEN_ARENA_NEW(arena, Rgb, m.n_vertices))) return no_memory(r);
+    r->has_face_colors = has_roles(r, FACE_COLOR, 3);
     s = read_elements(r, &m);
     if (s) return s;
     m.n_triangles = r->n_triangles;
     m.triangles = sheen_arena_alloc(arena, r->n_triangles, sizeof *m.triangles);
     if (!m.triangles) return no_memory(r);
     if (r->n_triangles) memcpy(m.triangles, r->triangles, (size_t)r->n_triangles * sizeof *m.triangles);
+    if (r->has_face_colors) {
+        m.face_color = SHEEN_ARENA_NEW(arena, Rgb, r->n_triangles);
+        if (!m.face_color) return no_memory(r);
+        if (r->n_triangles) memcpy(m.face_color, r->face_colors, r->n_triangles * sizeof *m.face_color);
+    }
     *out = m;
     return SHEEN_OK;
 }
@@ -392,6 +452,7 @@ SheenStatus sheen_ply_parse(const char *data, size_t size, const char *name, She
     r->at = data, r->end = data + size, r->name = name, r->log = log;
     SheenStatus s = read_mesh(r, arena, out);
     free(r->triangles);
+    free(r->face_colors);
     free(r->face);
     free(r->corners);
     free(r);

@@ -95,7 +95,6 @@ static float float_of(const unsigned char *bytes, bool is_double)
     return is_double ? (float)u64.d : u32.f;
 }
 
-/** Reads n numbers, to nowhere when `out` is NULL. */
 static SheenStatus read_floats(Reader *r, bool doubles, uint64_t n, float *out)
 {
     enum { CHUNK = 4096 };
@@ -105,7 +104,7 @@ static SheenStatus read_floats(Reader *r, bool doubles, uint64_t n, float *out)
         unsigned some = n - i < CHUNK ? (unsigned)(n - i) : CHUNK;
         SheenStatus s = read_bytes(r, bytes, (size_t)some * size);
         if (s) return s;
-        for (unsigned j = 0; out && j < some; ++j) out[i + j] = float_of(bytes + (size_t)j * size, doubles);
+        for (unsigned j = 0; j < some; ++j) out[i + j] = float_of(bytes + (size_t)j * size, doubles);
         i += some;
     }
     return SHEEN_OK;
@@ -167,11 +166,15 @@ static SheenStatus read_mesh(Reader *r, uint16_t version, SheenArena *arena, Mes
     if (s) return s;
     MeshData m = {.n_vertices = (uint32_t)n_vertices, .n_triangles = (uint32_t)n_triangles};
     if (!sheen_mesh_alloc(arena, &m, flags & HAS_NORMALS, flags & HAS_UV)) return no_memory(r);
+    if (flags & HAS_COLORS) {
+        m.color = SHEEN_ARENA_NEW(arena, Rgb, m.n_vertices);
+        if (!m.color) return no_memory(r);
+    }
     bool doubles = flags & DOUBLES;
     s = read_floats(r, doubles, 3 * n_vertices, &m.p->x);
     if (!s && m.n) s = read_floats(r, doubles, 3 * n_vertices, &m.n->x);
     if (!s && m.uv) s = read_floats(r, doubles, 2 * n_vertices, &m.uv->x);
-    if (!s && flags & HAS_COLORS) s = read_floats(r, doubles, 3 * n_vertices, NULL);
+    if (!s && m.color) s = read_floats(r, doubles, 3 * n_vertices, &m.color->r);
     if (!s) s = read_triangles(r, &m);
     if (s) return s;
     for (uint32_t i = 0; m.n && i < m.n_vertices; ++i) m.n[i] = v3_normalize(m.n[i]);

@@ -4,17 +4,6 @@
 #include "math/sampler.h"
 #include "math/warp.h"
 
-// Barycentric coordinates of vertices 1 and 2 of the foot of q on a triangle's plane.
-static Vec2 barycentric(const SheenMesh *mesh, uint32_t triangle, Vec3 q)
-{
-    const uint32_t *v = mesh->triangles[triangle];
-    Vec3 a = mesh->p[v[0]], e1 = v3_sub(mesh->p[v[1]], a), e2 = v3_sub(mesh->p[v[2]], a), d = v3_sub(q, a);
-    Vec3 n = v3_cross(e1, e2);
-    float n2 = v3_length2(n);
-    if (!(n2 > 0.0f)) return v2(0.0f, 0.0f);
-    return v2(v3_dot(v3_cross(d, e2), n) / n2, v3_dot(v3_cross(e1, d), n) / n2);
-}
-
 static float least(Vec2 b)
 {
     return minf(minf(b.x, b.y), 1.0f - b.x - b.y);
@@ -26,7 +15,7 @@ static uint32_t triangle_at(const SheenMesh *mesh, Vec3 q)
     uint32_t best = 0;
     float inside = -INFINITY;
     for (uint32_t i = 0; i < mesh->n_triangles; ++i) {
-        float depth = least(barycentric(mesh, i, q));
+        float depth = least(sheen_surface_barycentric(mesh, i, q));
         if (!(depth > inside)) continue;
         inside = depth;
         best = i;
@@ -39,7 +28,7 @@ static Rgb emission_of_hit(const SheenScene *scene, const SheenLight *light, con
     const Ray ray = {.o = q, .d = {0, 0, 1}}; // which has arrived
     SurfacePoint s;
     sheen_surface_from_hit(scene, &ray, hit, &s);
-    return sheen_emission(light, s.uv);
+    return sheen_emission(scene, light, &s);
 }
 
 Rgb sheen_emission_at(const SheenScene *scene, const SheenLight *light, uint32_t triangle, Vec3 q)
@@ -49,7 +38,7 @@ Rgb sheen_emission_at(const SheenScene *scene, const SheenLight *light, uint32_t
     Hit hit = {.shape = light->shape, .instance = SHEEN_NONE};
     if (shape->kind == SHEEN_SHAPE_MESH) {
         hit.triangle = triangle == SHEEN_NONE ? triangle_at(&shape->mesh, q) : triangle;
-        Vec2 b = barycentric(&shape->mesh, hit.triangle, q);
+        Vec2 b = sheen_surface_barycentric(&shape->mesh, hit.triangle, q);
         hit.u = clampf(b.x, 0.0f, 1.0f);
         hit.v = clampf(b.y, 0.0f, 1.0f - hit.u);
     }

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a surface emits: the same everywhere, or by a texture over its uv.
+// What a surface emits: the same everywhere, or by a texture.
 #ifndef SHEEN_LIGHT_EMISSION_H
 #define SHEEN_LIGHT_EMISSION_H
 
 #include "light/light.h"
 
-/** @return radiance of an area light where the surface has these coordinates; W m^-2 sr^-1. Pure, thread-safe. */
-static inline Rgb sheen_emission(const SheenLight *light, Vec2 uv)
+/** @return radiance of an area light at a point of its surface; W m^-2 sr^-1. Pure, thread-safe. */
+static inline Rgb sheen_emission(const SheenScene *scene, const SheenLight *light, const SurfacePoint *s)
 {
     if (!light->texture) return light->radiance;
-    Rgb c = sheen_texture_eval(light->texture, uv); // of a picture, which may hold anything
+    Rgb c = sheen_surface_texture(scene, light->texture, s); // of a picture, which may hold anything
     return rgb(maxf(c.r, 0.0f), maxf(c.g, 0.0f), maxf(c.b, 0.0f));
 }
 

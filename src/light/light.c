@@ -249,7 +249,7 @@ Rgb sheen_emitted(const SheenScene *scene, const SurfacePoint *s, Vec3 wo)
 {
     uint32_t light = scene->shapes[s->shape].light;
     if (light == SHEEN_NONE || !(v3_dot(s->ng, wo) > 0.0f)) return rgb_gray(0.0f);
-    return sheen_emission(&scene->lights[light], s->uv);
+    return sheen_emission(scene, &scene->lights[light], s);
 }
 
 Rgb sheen_environment_soft(const SheenLights *lights, Vec3 wi)

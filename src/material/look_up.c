@@ -21,12 +21,12 @@ typedef struct Inside {
 
 static Rgb color_at(const Place *p, const SheenTexture *t)
 {
-    return rgb_unit(sheen_texture_eval(t, p->s->uv));
+    return rgb_unit(sheen_surface_texture(p->scene, t, p->s));
 }
 
 static float number_at(const Place *p, const SheenTexture *t)
 {
-    return rgb_luminance(sheen_texture_eval(t, p->s->uv));
+    return rgb_luminance(sheen_surface_texture(p->scene, t, p->s));
 }
 
 static float unit_at(const Place *p, const SheenTexture *t)

@@ -189,3 +189,34 @@ void sheen_surface_from_hit(const SheenScene *scene, const Ray *ray, const Hit *
     // Far from its vertices an interpolated normal may turn away: light would then come from the wrong side.
     if (v3_dot(out->ng, out->ns) < 0.0f) out->ns = out->ng;
 }
+
+Vec2 sheen_surface_barycentric(const SheenMesh *mesh, uint32_t triangle, Vec3 p)
+{
+    const uint32_t *v = mesh->triangles[triangle];
+    Vec3 a = mesh->p[v[0]], e1 = v3_sub(mesh->p[v[1]], a), e2 = v3_sub(mesh->p[v[2]], a), d = v3_sub(p, a);
+    Vec3 n = v3_cross(e1, e2);
+    float n2 = v3_length2(n);
+    if (!(n2 > 0.0f)) return v2(0.0f, 0.0f);
+    return v2(v3_dot(v3_cross(d, e2), n) / n2, v3_dot(v3_cross(e1, d), n) / n2);
+}
+
+static Rgb color_of_mesh(const SheenScene *scene, const SheenTexture *t, const SurfacePoint *s)
+{
+    const SheenShape *shape = &scene->shapes[s->shape];
+    const SheenMesh *mesh = &shape->mesh;
+    if (shape->kind != SHEEN_SHAPE_MESH) return t->value;
+    if (t->kind == SHEEN_TEXTURE_FACE_COLOR)
+        return mesh->face_color ? rgb_mul(t->scale, mesh->face_color[s->triangle]) : t->value;
+    if (!mesh->color) return t->value;
+    Vec3 p = s->instance == SHEEN_NONE ? s->p : transform_point(&scene->instances[s->instance].to_group, s->p);
+    Vec2 b = sheen_surface_barycentric(mesh, s->triangle, p);
+    float u = clampf(b.x, 0.0f, 1.0f), v = clampf(b.y, 0.0f, 1.0f - u);
+    const uint32_t *i = mesh->triangles[s->triangle];
+    Rgb c = rgb_mad(rgb_scale(mesh->color[i[0]], 1.0f - u - v), u, mesh->color[i[1]]);
+    return rgb_mul(t->scale, rgb_mad(c, v, mesh->color[i[2]]));
+}
+
+Rgb sheen_surface_texture(const SheenScene *scene, const SheenTexture *t, const SurfacePoint *s)
+{
+    return sheen_texture_is_of_mesh(t) ? color_of_mesh(scene, t, s) : sheen_texture_eval(t, s->uv);
+}

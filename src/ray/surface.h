@@ -35,6 +35,12 @@ Vec3 sheen_surface_front(const SheenShape *shape, uint32_t triangle, Vec3 p);
  */
 void sheen_surface_tangents(const SheenScene *scene, const SurfacePoint *s, Vec3 *dpdu, Vec3 *dpdv);
 
+/** @return barycentric coordinates of vertices 1 and 2 of a point's foot on a triangle's plane, mesh's own space. */
+Vec2 sheen_surface_barycentric(const SheenMesh *mesh, uint32_t triangle, Vec3 p);
+
+/** @return the linear value of a texture at a point: by its uv, or of its mesh's own colours. Pure, thread-safe. */
+Rgb sheen_surface_texture(const SheenScene *scene, const SheenTexture *t, const SurfacePoint *s);
+
 /**
  * @param n  geometric normal, on the side to which rays go
  * @return a point off the surface from which a ray on that side does not hit it again. The distance follows the

@@ -32,9 +32,15 @@ static bool drop_bad_triangles(SheenArena *arena, SheenMesh *m, uint32_t *droppe
     if (*dropped == 0) return true;
     uint32_t(*good)[3] = sheen_arena_alloc(arena, n_good, sizeof *good);
     if (!good) return false;
+    Rgb *color = m->face_color ? SHEEN_ARENA_NEW(arena, Rgb, n_good) : NULL;
+    if (m->face_color && !color) return false;
     uint32_t n = 0;
-    for (uint32_t i = 0; i < m->n_triangles; ++i)
-        if (triangle_ok(m, m->triangles[i])) memcpy(good[n++], m->triangles[i], sizeof *good);
+    for (uint32_t i = 0; i < m->n_triangles; ++i) {
+        if (!triangle_ok(m, m->triangles[i])) continue;
+        if (color) color[n] = m->face_color[i];
+        memcpy(good[n++], m->triangles[i], sizeof *good);
+    }
+    m->face_color = color;
     m->triangles = (const uint32_t(*)[3])good;
     m->n_triangles = n_good;
     return true;

@@ -144,7 +144,8 @@ static bool find_coat(const SheenMaterial earlier[], uint32_t n, SheenMaterial *
 static bool make_coat(SheenArena *arena, const SheenMaterial earlier[], uint32_t n, SheenMaterial *m)
 {
     float lo = SHEEN_ALPHA_MIN, hi = 1.0f; // of a bitmap
-    if (m->alpha_u.kind != SHEEN_TEXTURE_BITMAP) lo = hi = rgb_luminance(m->alpha_u.value);
+    if (m->alpha_u.kind != SHEEN_TEXTURE_BITMAP && !sheen_texture_is_of_mesh(&m->alpha_u))
+        lo = hi = rgb_luminance(m->alpha_u.value);
     if (sheen_texture_has_two_values(&m->alpha_u)) {
         lo = minf(lo, rgb_luminance(m->alpha_u.value2));
         hi = maxf(hi, rgb_luminance(m->alpha_u.value2));

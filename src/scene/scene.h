@@ -27,6 +27,8 @@ typedef struct SheenMesh {
     const Vec3 *n;                  // [n_vertices] unit shading normals, NULL for face normals
     const Vec2 *uv;                 // [n_vertices], NULL when the mesh has none
     const uint32_t (*triangles)[3]; // [n_triangles] indices of vertices
+    const Rgb *color;               // [n_vertices], NULL when the mesh has none: for SHEEN_TEXTURE_VERTEX_COLOR
+    const Rgb *face_color;          // [n_triangles], NULL: for SHEEN_TEXTURE_FACE_COLOR
 } SheenMesh;
 
 /** The front side is outside, or inside when `flip`. */

@@ -79,7 +79,7 @@ static bool on_line(const SheenTexture *t, float x)
 
 Rgb sheen_texture_eval(const SheenTexture *t, Vec2 uv)
 {
-    if (t->kind == SHEEN_TEXTURE_CONSTANT) return t->value;
+    if (t->kind == SHEEN_TEXTURE_CONSTANT || sheen_texture_is_of_mesh(t)) return t->value;
     float u = t->uv[0][0] * uv.x + t->uv[0][1] * uv.y + t->uv[0][2];
     float v = t->uv[1][0] * uv.x + t->uv[1][1] * uv.y + t->uv[1][2];
     if (t->kind == SHEEN_TEXTURE_BITMAP) return rgb_mul(t->scale, eval_bitmap(t, u, v));
@@ -127,6 +127,8 @@ Rgb sheen_texture_mean(const SheenTexture *t)
 {
     switch (t->kind) {
     case SHEEN_TEXTURE_CONSTANT:
+    case SHEEN_TEXTURE_VERTEX_COLOR:
+    case SHEEN_TEXTURE_FACE_COLOR:
         return t->value;
     case SHEEN_TEXTURE_BITMAP:
         return rgb_mul(t->scale, mean_of_bitmap(&t->bitmap));

@@ -19,15 +19,17 @@ typedef enum SheenTextureKind {
     SHEEN_TEXTURE_CONSTANT,
     SHEEN_TEXTURE_BITMAP,
     SHEEN_TEXTURE_CHECKERBOARD,
-    SHEEN_TEXTURE_GRID // lines along the borders of the unit squares
+    SHEEN_TEXTURE_GRID,         // lines along the borders of the unit squares
+    SHEEN_TEXTURE_VERTEX_COLOR, // of the mesh, between its vertices; see sheen_surface_texture
+    SHEEN_TEXTURE_FACE_COLOR    // of the mesh's triangle
 } SheenTextureKind;
 typedef enum SheenWrap { SHEEN_WRAP_REPEAT, SHEEN_WRAP_MIRROR, SHEEN_WRAP_CLAMP } SheenWrap;
 
 typedef struct SheenTexture {
     SheenTextureKind kind;
-    Rgb value;  // constant; first colour of the checkerboard; between the lines of the grid
+    Rgb value; // constant; first colour of the checkerboard; between the lines of the grid; where a mesh has no colours
     Rgb value2; // second colour of the checkerboard; of the grid's lines
-    Rgb scale;  // factor on a bitmap's colours
+    Rgb scale;  // factor on the colours of a bitmap or a mesh
     SheenBitmap bitmap;
     SheenWrap wrap;
     bool nearest;     // nearest texel instead of bilinear
@@ -44,12 +46,18 @@ static inline bool sheen_texture_has_two_values(const SheenTexture *t)
     return t->kind == SHEEN_TEXTURE_CHECKERBOARD || t->kind == SHEEN_TEXTURE_GRID;
 }
 
+/** @return true for the colours of a mesh, which do not follow from uv. */
+static inline bool sheen_texture_is_of_mesh(const SheenTexture *t)
+{
+    return t->kind == SHEEN_TEXTURE_VERTEX_COLOR || t->kind == SHEEN_TEXTURE_FACE_COLOR;
+}
+
 /** Multiplies all that the texture gives. */
 void sheen_texture_scale(SheenTexture *t, Rgb factor);
 
 /**
  * @param uv  surface coordinates; v grows upward, so that (0, 0) is the lower left corner of a bitmap
- * @return the texture's linear value; bilinear unless `nearest`. Pure, thread-safe.
+ * @return the texture's linear value; bilinear unless `nearest`; `value` for the colours of a mesh. Pure, thread-safe.
  */
 Rgb sheen_texture_eval(const SheenTexture *t, Vec2 uv);
 

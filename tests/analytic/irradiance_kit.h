@@ -149,7 +149,7 @@ static inline uint32_t kit_smooth_sphere(SheenBuilder *b, Vec3 center, float rad
             memcpy(triangles[t++], (uint32_t[3]){at, right + sectors, right}, sizeof *triangles);
         }
     SheenShape s = {.kind = SHEEN_SHAPE_MESH, .material = material, .light = SHEEN_NONE, .name = "smooth sphere"};
-    s.mesh = (SheenMesh){n, m, p, normals, NULL, (const uint32_t(*)[3])triangles};
+    s.mesh = (SheenMesh){n, m, p, normals, NULL, (const uint32_t(*)[3])triangles, NULL, NULL};
     return sheen_builder_add_shape(b, &s);
 }
 

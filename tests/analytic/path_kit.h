@@ -74,7 +74,7 @@ static inline uint32_t kit_quad(SheenBuilder *b, Vec3 p, Vec3 e1, Vec3 e2, uint3
     memcpy(uv, (Vec2[]){{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 4 * sizeof *uv);
     memcpy(triangles, (uint32_t[2][3]){{0, 1, 2}, {0, 2, 3}}, 2 * sizeof *triangles);
     SheenShape s = {.kind = SHEEN_SHAPE_MESH, .material = material, .light = SHEEN_NONE, .name = "quad"};
-    s.mesh = (SheenMesh){4, 2, points, NULL, uv, (const uint32_t(*)[3])triangles};
+    s.mesh = (SheenMesh){4, 2, points, NULL, uv, (const uint32_t(*)[3])triangles, NULL, NULL};
     return sheen_builder_add_shape(b, &s);
 }
 

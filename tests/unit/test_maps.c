@@ -91,7 +91,7 @@ static void test_tangents_move_as_the_surface(void **state)
             static Vec2 uv[4] = {{0.1f, 0.9f}, {0.2f, 0.1f}, {0.8f, 0.2f}, {1.4f, 1.1f}};
             static const uint32_t t[2][3] = {{0, 1, 2}, {0, 2, 3}};
             shape.kind = SHEEN_SHAPE_MESH;
-            shape.mesh = (SheenMesh){4, 2, p, NULL, uv, t};
+            shape.mesh = (SheenMesh){4, 2, p, NULL, uv, t, NULL, NULL};
         }
         if (kind == 3) { // placed: turned and stretched
             Transform to_world = transform_mul(transform_rotate(v3(0, 0, 1), 0.7), transform_scale(1.5, 0.8, 2));
@@ -137,7 +137,7 @@ static Mapped mapped(const SheenMaterial *outer, const SheenMaterial *inner, boo
         index = sheen_builder_add_material(b, &top);
     }
     SheenShape shape = {.kind = SHEEN_SHAPE_MESH, .material = index, .name = "square"};
-    shape.mesh = (SheenMesh){4, 2, p, NULL, u_along_y ? along_y : along_x, t};
+    shape.mesh = (SheenMesh){4, 2, p, NULL, u_along_y ? along_y : along_x, t, NULL, NULL};
     sheen_builder_add_shape(b, &shape);
     assert_int_equal(sheen_builder_commit(&b, &m.scene), SHEEN_OK);
     return m;
