@@ -93,8 +93,15 @@ Rgb sheen_glossy_found(const SheenWork *work, const GlossyOrigin *origin, const 
 Rgb sheen_glossy_found_sky(const SheenWork *work, const GlossyOrigin *origin, Vec3 wi)
 {
     Rgb all = sheen_environment(work->scene, wi), soft = sheen_environment_soft(work->lights, wi);
-    uint32_t light = sheen_lights_environment(work->lights);
-    if (rgb_is_black(all) || light == SHEEN_NONE) return all;
-    float share = share_found(work, origin, light, sheen_light_pdf_escape(work->lights, light, wi));
-    return rgb_mad(soft, share, rgb_sub(all, soft)); // the soft part is left to rays
+    uint32_t light = sheen_lights_environment(work->lights), first, n = sheen_lights_suns(work->lights, &first);
+    if (!rgb_is_black(all) && light != SHEEN_NONE) {
+        float share = share_found(work, origin, light, sheen_light_pdf_escape(work->lights, light, wi));
+        all = rgb_mad(soft, share, rgb_sub(all, soft)); // the soft part is left to rays
+    }
+    for (uint32_t sun = first; sun < first + n; ++sun) {
+        Rgb L = sheen_sun(work->lights, sun, wi);
+        if (rgb_is_black(L)) continue;
+        all = rgb_mad(all, share_found(work, origin, sun, sheen_light_pdf_escape(work->lights, sun, wi)), L);
+    }
+    return all;
 }

@@ -41,7 +41,8 @@ Rgb sheen_glossy_lit(const SheenWork *work, const SeenSurface *v, uint32_t branc
 bool sheen_glossy_ray(const SeenSurface *v, SheenSampler *sampler, Ray *ray, Rgb *weight, float *roughness,
                       GlossyOrigin *origin);
 
-/** The share of light that such a ray found on a surface, sheen_emitted, or beyond all, sheen_environment. */
+/** The share of light that such a ray found on a surface, sheen_emitted, or beyond all, sheen_environment and
+ * sheen_suns. */
 Rgb sheen_glossy_found(const SheenWork *work, const GlossyOrigin *origin, const SurfacePoint *s, Vec3 wo);
 Rgb sheen_glossy_found_sky(const SheenWork *work, const GlossyOrigin *origin, Vec3 wi);
 

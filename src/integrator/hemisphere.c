@@ -89,7 +89,8 @@ static Rgb caustic_of(const SheenWork *work, const Followed *f)
     if (f->specular == 0) return rgb_gray(0.0f);
     if (!f->escaped) return rgb_add(rgb_mul(f->throughput, f->emitted), f->passed);
     Rgb all = sheen_environment(work->scene, f->direction), soft = sheen_environment_soft(work->lights, f->direction);
-    return rgb_add(rgb_mul(f->throughput, rgb_sub(all, soft)), f->passed);
+    Rgb hard = rgb_add(rgb_sub(all, soft), sheen_suns(work->lights, f->direction));
+    return rgb_add(rgb_mul(f->throughput, hard), f->passed);
 }
 
 // What one ray of the gather, or of an extension of one of its vertices, ended on.

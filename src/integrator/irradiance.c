@@ -87,6 +87,7 @@ static bool gathers_see_light(const SheenScene *scene)
 {
     if (scene->environment != SHEEN_NONE) return true;
     bool lamps = false, delta = false;
+    for (uint32_t i = 0; i < scene->n_lights; ++i) lamps = lamps || scene->lights[i].disk > 0.0f;
     for (uint32_t i = 0; i < scene->n_shapes; ++i) {
         lamps = lamps || scene->shapes[i].light != SHEEN_NONE;
         delta = delta || sheen_material_may_be_delta(scene, scene->shapes[i].material);

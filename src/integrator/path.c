@@ -67,15 +67,23 @@ static float weight_of_found(const Path *path, uint32_t light, float pdf_light)
     return power_heuristic(path->pdf, (float)path->light_samples * choice * pdf_light);
 }
 
-static void add_environment(Path *path)
+// @param light  of which L is; may be SHEEN_NONE
+static void add_escaped(Path *path, Rgb L, uint32_t light)
+{
+    if (rgb_is_black(L)) return;
+    if (path->competes && light != SHEEN_NONE) {
+        float pdf_light = sheen_light_pdf_escape(path->work->lights, light, path->ray.d);
+        L = rgb_scale(L, weight_of_found(path, light, pdf_light));
+    }
+    add_light(path, path->scatterings, L);
+}
+
+static void add_sky(Path *path)
 {
     const SheenLights *lights = path->work->lights;
-    Rgb L = sheen_environment(path->work->scene, path->ray.d);
-    if (rgb_is_black(L)) return;
-    uint32_t light = sheen_lights_environment(lights);
-    if (path->competes && light != SHEEN_NONE)
-        L = rgb_scale(L, weight_of_found(path, light, sheen_light_pdf_escape(lights, light, path->ray.d)));
-    add_light(path, path->scatterings, L);
+    uint32_t first, n = sheen_lights_suns(lights, &first);
+    add_escaped(path, sheen_environment(path->work->scene, path->ray.d), sheen_lights_environment(lights));
+    for (uint32_t sun = first; sun < first + n; ++sun) add_escaped(path, sheen_sun(lights, sun, path->ray.d), sun);
 }
 
 static void add_emitted(Path *path, const SurfacePoint *s, Vec3 wo)
@@ -212,7 +220,7 @@ PathRadiance sheen_path_trace(const SheenWork *work, const Ray *ray, const Hit *
     Hit next = *hit;
     for (;;) {
         if (next.shape == SHEEN_NONE) {
-            add_environment(&path);
+            add_sky(&path);
             break;
         }
         SurfacePoint s;

@@ -245,7 +245,8 @@ static Rgb found(const SheenWork *work, const EyeRay *r, const SurfacePoint *s)
     Vec3 wo = v3_neg(r->ray.d);
     if (r->competes)
         return s ? sheen_glossy_found(work, &r->origin, s, wo) : sheen_glossy_found_sky(work, &r->origin, r->ray.d);
-    return s ? sheen_emitted(work->scene, s, wo) : sheen_environment(work->scene, r->ray.d);
+    if (s) return sheen_emitted(work->scene, s, wo);
+    return rgb_add(sheen_environment(work->scene, r->ray.d), sheen_suns(work->lights, r->ray.d));
 }
 
 static bool arrive(const SheenWork *work, const SheenEye *eye, EyeRay *r, const Hit *hit, int list, Picture *picture,

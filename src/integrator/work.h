@@ -130,7 +130,8 @@ static inline float sheen_eye_footprint(const SheenEye *eye, float length)
  *
  * What both count as light, with B = options.bounces:
  * - A scattering at a delta lobe (mirror, glass) is no bounce: it is followed, up to SHEEN_PATH_MAX_DELTA times a path.
- *   Emitters seen through delta lobes count fully; delta lights (point, spot, directional) cannot be seen at all.
+ *   Emitters seen through delta lobes count fully; delta lights (point, spot, directional without a disk) cannot be
+ * seen at all.
  * - Passage through holes (masks) is no scattering, and shadow rays pass them too: light behind them counts as if they
  *   were not there, weakened by their opacity. A way passes SHEEN_PASSAGES_MAX of them.
  * - Every other scattering is one. Light reaches the eye after at most B + 1 of them: B = 0 is direct light only.

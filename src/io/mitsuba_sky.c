@@ -100,6 +100,19 @@ static void add_sky(Mitsuba *m, const SheenXml *e, const Heaven *h, double scale
     sheen_builder_add_light(m->builder, &l);
 }
 
+/** @return the angular radius of the disk, radians: Mitsuba 3 asks for the width, those before for a factor on it. */
+static double sun_disk(Mitsuba *m, const SheenXml *e)
+{
+    const double widest = 90.0;
+    double scale = sheen_mi_float(m, e, "sun_radius_scale", 1.0);
+    double width = sheen_mi_float(m, e, "sun_aperture", SHEEN_SUN_WIDTH) * scale;
+    if (width >= 0.0 && width <= widest) return 0.5 * width * (double)SHEEN_PI / 180.0;
+    if (!m->status)
+        sheen_xml_warn(m->log, e, "the sun's width of %g degrees is outside [0, %g]: taken as %g", width, widest,
+                       SHEEN_SUN_WIDTH);
+    return 0.5 * SHEEN_SUN_WIDTH * (double)SHEEN_PI / 180.0;
+}
+
 void sheen_mi_sky(Mitsuba *m, SheenXml *e)
 {
     const char *type = sheen_mi_type(e);
@@ -108,14 +121,15 @@ void sheen_mi_sky(Mitsuba *m, SheenXml *e)
     double sky = sheen_mi_float(m, e, "sky_scale", scale), sun = sheen_mi_float(m, e, "sun_scale", scale);
     Heaven h;
     if (!read_heaven(m, e, &h)) return;
-    // The model has no ground, and the sun is a direction, without a disk; how Mitsuba stores and stretches it.
-    sheen_mi_ignore(e, "albedo sun_radius_scale sun_aperture complex_sun resolution samples_per_pixel");
+    // The model has no ground; the sun's disk is even; how Mitsuba stores it.
+    sheen_mi_ignore(e, "albedo complex_sun resolution samples_per_pixel");
+    double disk = sun_disk(m, e);
     if (h.sun.y < 0.0f) {
         sheen_xml_warn(m->log, e, "the sun of '%s' is below the horizon: the light is left out", type);
         return;
     }
     if (has_sky && sky != 0.0) add_sky(m, e, &h, sky);
-    SheenLight l = {.kind = SHEEN_LIGHT_DIRECTIONAL, .direction = v3_neg(h.to_sun)};
+    SheenLight l = {.kind = SHEEN_LIGHT_DIRECTIONAL, .direction = v3_neg(h.to_sun), .disk = (float)disk};
     l.radiance = rgb_scale(sheen_sun_irradiance(h.turbidity, h.theta_sun), (float)sun);
     if (has_sun && sun != 0.0) sheen_builder_add_light(m->builder, &l);
 }

@@ -9,6 +9,9 @@
 #define SHEEN_TURBIDITY_MIN 2.0
 #define SHEEN_TURBIDITY_MAX 10.0
 
+/** Width of the sun as seen from the Earth, degrees. */
+#define SHEEN_SUN_WIDTH 0.5358
+
 /** A place and a time, for the sun's position. */
 typedef struct SheenSkyTime {
     double latitude, longitude; // degrees, north and east positive

@@ -15,6 +15,7 @@ struct SheenLights {
     const SheenScene *scene;
     uint32_t *of_light;                  // [scene->n_lights] index into sources, or SHEEN_NONE
     uint32_t environment;                // index into sources, or SHEEN_NONE
+    uint32_t first_sun, n_suns;          // indices into sources
     const SheenLight *environment_light; // NULL for none
     float soft_limit;                    // luminance up to which samples leave the environment out
 };
@@ -82,6 +83,7 @@ static SheenStatus gather_sources(const SheenScene *scene, SheenEnvironmentSplit
         l->sources[k] = all[order[k].index];
         l->of_light[order[k].index] = k;
         if (l->sources[k].kind == SOURCE_ENVIRONMENT) l->environment = k;
+        if (l->sources[k].kind == SOURCE_SUN && l->n_suns++ == 0) l->first_sun = k;
     }
     return SHEEN_OK;
 }
@@ -159,6 +161,12 @@ uint32_t sheen_lights_environment(const SheenLights *lights)
     return lights->environment;
 }
 
+uint32_t sheen_lights_suns(const SheenLights *lights, uint32_t *first)
+{
+    *first = lights->first_sun;
+    return lights->n_suns;
+}
+
 float sheen_lights_choose(const SheenLights *lights, Vec3 p, Vec3 n, float *u, uint32_t *light)
 {
     return sheen_chooser_pick(&lights->chooser, p, n, u, light);
@@ -212,6 +220,14 @@ static bool sample_environment(const EnvironmentSampler *e, Vec2 u, LightSample 
     return true;
 }
 
+static bool sample_sun(const SunDisk *sun, Vec2 u, LightSample *out)
+{
+    Vec3 wi = sheen_sun_disk_sample(sun, u);
+    *out = (LightSample){
+        .wi = wi, .infinite = true, .radiance = rgb_scale(sun->radiance, 1.0f / sun->pdf), .pdf = sun->pdf};
+    return true;
+}
+
 bool sheen_light_sample(const SheenLights *lights, uint32_t light, Vec3 p, Vec2 u, LightSample *out)
 {
     const Source *s = &lights->sources[light];
@@ -226,6 +242,8 @@ bool sheen_light_sample(const SheenLights *lights, uint32_t light, Vec3 p, Vec2 
                              .radiance = s->light->radiance,
                              .pdf = 1.0f};
         return true;
+    case SOURCE_SUN:
+        return sample_sun(&s->sun, u, out);
     case SOURCE_ENVIRONMENT:
         return sample_environment(&s->environment, u, out);
     default:
@@ -240,7 +258,9 @@ float sheen_light_pdf_hit(const SheenLights *lights, uint32_t light, Vec3 p, con
 
 float sheen_light_pdf_escape(const SheenLights *lights, uint32_t light, Vec3 wi)
 {
-    return sheen_environment_sampler_pdf(&lights->sources[light].environment, wi);
+    const Source *s = &lights->sources[light];
+    if (s->kind == SOURCE_SUN) return sun_disk_covers(&s->sun, wi) ? s->sun.pdf : 0.0f;
+    return sheen_environment_sampler_pdf(&s->environment, wi);
 }
 
 // ---- radiance ---------------------------------------------------------------------------------------------------
@@ -250,6 +270,19 @@ Rgb sheen_emitted(const SheenScene *scene, const SurfacePoint *s, Vec3 wo)
     uint32_t light = scene->shapes[s->shape].light;
     if (light == SHEEN_NONE || !(v3_dot(s->ng, wo) > 0.0f)) return rgb_gray(0.0f);
     return sheen_emission(scene, &scene->lights[light], s);
+}
+
+Rgb sheen_sun(const SheenLights *lights, uint32_t sun, Vec3 wi)
+{
+    const SunDisk *disk = &lights->sources[sun].sun;
+    return sun_disk_covers(disk, wi) ? disk->radiance : rgb_gray(0.0f);
+}
+
+Rgb sheen_suns(const SheenLights *lights, Vec3 wi)
+{
+    Rgb sum = rgb_gray(0.0f);
+    for (uint32_t i = 0; i < lights->n_suns; ++i) sum = rgb_add(sum, sheen_sun(lights, lights->first_sun + i, wi));
+    return sum;
 }
 
 Rgb sheen_environment_soft(const SheenLights *lights, Vec3 wi)

@@ -33,7 +33,7 @@ typedef struct LightSample {
     Vec3 wi;       // unit, toward the light
     Vec3 target;   // end of the shadow ray, off the light's surface toward the point; finite lights only
     bool infinite; // environment and directional: the shadow ray has no end
-    bool delta;    // point, spot, directional: no other technique can find it; pdf is 1
+    bool delta;    // point, spot, directional without a disk: no other technique can find it; pdf is 1
     Rgb radiance;  // arriving radiance over pdf: L / pdf for the others; E over a facing surface for delta lights
     float pdf;     // solid angle density, 1/sr
 } LightSample;
@@ -55,7 +55,7 @@ float sheen_lights_choose(const SheenLights *lights, Vec3 p, Vec3 n, float *u, u
 /** @return the probability with which sheen_lights_choose picks `light` at (p, n). */
 float sheen_lights_choose_probability(const SheenLights *lights, Vec3 p, Vec3 n, uint32_t light);
 
-/** @return whether all samples of a light at one point are alike: point, spot, directional. */
+/** @return whether all samples of a light at one point are alike: point, spot, directional without a disk. */
 bool sheen_light_is_delta(const SheenLights *lights, uint32_t light);
 
 /** Samples a light as seen from p, by solid angle where a closed form exists. @return false when nothing arrives. */
@@ -67,13 +67,25 @@ bool sheen_light_sample(const SheenLights *lights, uint32_t light, Vec3 p, Vec2 
  */
 float sheen_light_pdf_hit(const SheenLights *lights, uint32_t light, Vec3 p, const SurfacePoint *hit);
 
-/** The same for a direction that leaves the scene. */
+/** The same for a direction that leaves the scene, of the environment or a sun. */
 float sheen_light_pdf_escape(const SheenLights *lights, uint32_t light, Vec3 wi);
 
 /** @return the index for the functions above of the light on a shape, or SHEEN_NONE. */
 uint32_t sheen_lights_of_shape(const SheenLights *lights, uint32_t shape);
 /** @return the index for the functions above of the environment, or SHEEN_NONE. */
 uint32_t sheen_lights_environment(const SheenLights *lights);
+
+/**
+ * Suns: directional lights with a disk.
+ * @param first  gets the index for the functions above of the first; the others follow
+ * @return their number
+ */
+uint32_t sheen_lights_suns(const SheenLights *lights, uint32_t *first);
+
+/** @return radiance that arrives along wi (unit, pointing out of the scene) from one sun's disk. W m^-2 sr^-1. */
+Rgb sheen_sun(const SheenLights *lights, uint32_t sun, Vec3 wi);
+/** The same from all of them, which sheen_environment does not know. */
+Rgb sheen_suns(const SheenLights *lights, Vec3 wi);
 
 /** @return radiance that a surface point emits toward wo (unit): zero for no light or from behind. W m^-2 sr^-1. */
 Rgb sheen_emitted(const SheenScene *scene, const SurfacePoint *s, Vec3 wo);

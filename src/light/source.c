@@ -296,8 +296,9 @@ SheenStatus sheen_source_init(const SheenScene *scene, const SheenLight *light, 
         out->center = light->position;
         break;
     case SHEEN_LIGHT_DIRECTIONAL:
-        out->kind = SOURCE_DIRECTIONAL;
+        out->kind = light->disk > 0.0f ? SOURCE_SUN : SOURCE_DIRECTIONAL;
         out->radius = INFINITY;
+        if (out->kind == SOURCE_SUN) out->sun = sheen_sun_disk(light);
         break;
     case SHEEN_LIGHT_ENVIRONMENT:
         out->kind = SOURCE_ENVIRONMENT;

@@ -7,6 +7,7 @@
 #include "light/light.h"
 #include "light/spherical.h"
 #include "light/spot.h"
+#include "light/sun.h"
 
 /** In the order in which choose.c estimates them. */
 typedef enum SourceKind {
@@ -18,6 +19,7 @@ typedef enum SourceKind {
     SOURCE_POINT,
     SOURCE_SPOT, // and projectors
     SOURCE_DIRECTIONAL,
+    SOURCE_SUN, // directional with a disk
     SOURCE_ENVIRONMENT,
     SOURCE_KINDS
 } SourceKind;
@@ -39,6 +41,7 @@ typedef struct Source {
     Vec3 axis;                  // meshes: all normals are within a cone about it
     float cos_cone;             // cosine of the cone's half-angle
     EnvironmentSampler environment;
+    SunDisk sun;
 } Source;
 
 /** A point on a finite light, seen from a point p. */

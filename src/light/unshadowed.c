@@ -138,6 +138,12 @@ static float weigh_environment(const EnvironmentSampler *e, Vec3 n)
     return 0.25f * maxf(even, 0.1f * e->flux) + maxf(v3_dot(e->flux_vector, n), 0.0f);
 }
 
+// By the cosine, and never zero where a part of the disk is above the horizon.
+static float weigh_sun(const Source *s, Vec3 n)
+{
+    return rgb_mean(s->light->radiance) * horizon(-v3_dot(s->light->direction, n), sqrtf(s->sun.sin2));
+}
+
 static void weigh_rest(const Source sources[], uint32_t first, uint32_t count, Vec3 p, Vec3 n, float *restrict w)
 {
     for (uint32_t i = 0; i < count; ++i) {
@@ -146,6 +152,8 @@ static void weigh_rest(const Source sources[], uint32_t first, uint32_t count, V
             w[i] = weigh_spot(s->light, p, n);
         else if (s->kind == SOURCE_ENVIRONMENT)
             w[i] = weigh_environment(&s->environment, n);
+        else if (s->kind == SOURCE_SUN)
+            w[i] = weigh_sun(s, n);
         else
             w[i] = s->brightness * maxf(-v3_dot(s->light->direction, n), 0.0f);
     }

@@ -174,6 +174,9 @@ uint32_t sheen_builder_add_light(SheenBuilder *b, const SheenLight *light)
         sheen_warn(b->log, "%s: %s without a picture, angle or place for it is left out", b->name, names[l.kind]);
         return SHEEN_NONE;
     }
+    // A narrower disk is none that rays can find; a wider one would be an environment.
+    if (l.kind != SHEEN_LIGHT_DIRECTIONAL || !(l.disk >= 1e-4f)) l.disk = 0.0f;
+    l.disk = minf(l.disk, 1.5f);
     if (l.kind != SHEEN_LIGHT_ENVIRONMENT) return list_add(b, &b->lights, &l, sizeof l);
 
     if (l.environment.width == 0)

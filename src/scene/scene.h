@@ -161,6 +161,8 @@ typedef struct SheenLight {
     Vec3 position;                // point, spot, projector
     Vec3 direction;               // spot: axis; directional: the way the light travels; unit
     float cos_inner, cos_outer;   // spot: full intensity inside, zero outside
+    float disk;                   // directional: angular radius of the even disk that it comes from, a sun's, radians
+                                  // in [0, pi / 2); 0: a direction alone, which cannot be seen
     float tan_x, tan_y;           // spot and projector with a texture: it fills the window |x| <= tan_x z,
                                   // |y| <= tan_y z of the light's own space, u along x and v against y
     SheenBitmap environment;      // float latitude-longitude image; row 0 is up, +y of its own space

@@ -830,7 +830,17 @@ static void skies_and_suns(void **state)
         assert_true(sheen_environment_radiance(sky, to_sun).g > 2.0f * sheen_environment_radiance(sky, mirrored).g);
         assert_true(rgb_is_black(sheen_environment_radiance(sky, v3_scale(cases[i].up, -1.0f))));
         kit_assert_rgb(sun->radiance, sheen_sun_irradiance(4.0, acos(0.8)), 1e-5f);
+        assert_float_equal(sun->disk, 0.0046757f, 1e-6f); // half of 0.5358 degrees
     }
+    const SheenScene *wide = kit_scene(k, "<emitter type=\"sun\"><float name=\"sun_aperture\" value=\"2\"/></emitter>");
+    assert_float_equal(wide->lights[0].disk, 0.0174533f, 1e-6f);
+    assert_int_equal(
+        kit_load_version(k, "0.6.0", "<emitter type=\"sun\"><float name=\"sunRadiusScale\" value=\"0\"/></emitter>"),
+        SHEEN_OK);
+    assert_true(k->scene->lights[0].disk == 0.0f);
+    wide = kit_scene(k, "<emitter type=\"sun\"><float name=\"sun_aperture\" value=\"-1\"/></emitter>");
+    assert_float_equal(wide->lights[0].disk, 0.0046757f, 1e-6f);
+    assert_non_null(strstr(k->warnings, "scene.xml:2:1: the sun's width of -1 degrees is outside [0, 90]"));
     // Mitsuba 3.9 has the sky of its default, a summer afternoon in Tokyo, brightest over (0.0698, 0.9976).
     const SheenScene *s = kit_scene(k, "<emitter type=\"sun\"/>");
     Vec3 to_sun = v3_neg(s->lights[0].direction);
