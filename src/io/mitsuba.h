@@ -5,6 +5,7 @@
 #ifndef SHEEN_IO_MITSUBA_H
 #define SHEEN_IO_MITSUBA_H
 
+#include "io/mesh.h"
 #include "io/xml.h"
 #include "scene/builder.h"
 
@@ -136,6 +137,14 @@ uint32_t sheen_mi_clear_material(Mitsuba *m);
 void sheen_mi_shape(Mitsuba *m, SheenXml *e, bool in_group);
 /** Makes a group of a shapegroup; its index is put into e->index. */
 void sheen_mi_shape_group(Mitsuba *m, SheenXml *e);
+
+/** Curves that become tubes. */
+typedef enum MitsubaCurve { MITSUBA_CURVE_LINEAR, MITSUBA_CURVE_SPLINE, MITSUBA_CURVE_HAIR } MitsubaCurve;
+/** mitsuba_curve.c: reads the curves of a shape into world space. @return false after an error */
+bool sheen_mi_curves(Mitsuba *m, SheenXml *e, MitsubaCurve kind, MeshData *mesh);
+
+/** mitsuba_heightfield.c: reads a height field into its own space. @return false after an error */
+bool sheen_mi_height_field(Mitsuba *m, SheenXml *e, MeshData *mesh);
 
 /** mitsuba_light.c: adds a light that is not on a shape. */
 void sheen_mi_emitter(Mitsuba *m, SheenXml *e);

@@ -220,11 +220,57 @@ static bool read_cylinder(Mitsuba *m, SheenXml *e, SheenShape *out)
     return place_mesh(m, e, &mesh, false, out);
 }
 
+// ---- curves and height fields -----------------------------------------------------------------------------------
+
+static bool read_curves(Mitsuba *m, SheenXml *e, MitsubaCurve kind, SheenShape *out)
+{
+    MeshData mesh;
+    if (!sheen_mi_curves(m, e, kind, &mesh)) return false;
+    out->kind = SHEEN_SHAPE_MESH;
+    out->mesh = sheen_mesh_finish(&mesh);
+    return true;
+}
+
+static bool read_linear_curves(Mitsuba *m, SheenXml *e, SheenShape *out)
+{
+    return read_curves(m, e, MITSUBA_CURVE_LINEAR, out);
+}
+
+static bool read_splines(Mitsuba *m, SheenXml *e, SheenShape *out)
+{
+    return read_curves(m, e, MITSUBA_CURVE_SPLINE, out);
+}
+
+static bool read_hair(Mitsuba *m, SheenXml *e, SheenShape *out)
+{
+    return read_curves(m, e, MITSUBA_CURVE_HAIR, out);
+}
+
+static bool read_height_field(Mitsuba *m, SheenXml *e, SheenShape *out)
+{
+    MeshData mesh;
+    bool smooth = sheen_mi_bool(m, e, "shading_normals", true);
+    if (!sheen_mi_height_field(m, e, &mesh) || !place_mesh(m, e, &mesh, false, out)) return false;
+    if (smooth && !sheen_mesh_smooth(m->arena, &mesh)) return no_memory(m, e);
+    out->mesh = sheen_mesh_finish(&mesh);
+    return true;
+}
+
 // ---- all shapes -------------------------------------------------------------------------------------------------
 
 static const Plugin plugins[] = {
-    {"obj", read_obj},       {"ply", read_ply},   {"rectangle", read_rectangle},   {"cube", read_cube},
-    {"sphere", read_sphere}, {"disk", read_disk}, {"serialized", read_serialized}, {"cylinder", read_cylinder},
+    {"obj", read_obj},
+    {"ply", read_ply},
+    {"rectangle", read_rectangle},
+    {"cube", read_cube},
+    {"sphere", read_sphere},
+    {"disk", read_disk},
+    {"serialized", read_serialized},
+    {"cylinder", read_cylinder},
+    {"linearcurve", read_linear_curves},
+    {"bsplinecurve", read_splines},
+    {"hair", read_hair},
+    {"heightfield", read_height_field},
 };
 
 static void add_area_light(Mitsuba *m, SheenXml *emitter, uint32_t shape, bool in_group)

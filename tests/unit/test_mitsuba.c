@@ -279,7 +279,7 @@ static void normals_by_the_largest_smooth_angle(void **state)
 static void shapes_that_are_not_there_are_named(void **state)
 {
     Kit *k = *state;
-    static const char *const names[] = {"heightfield", "hair", "bsplinecurve", "sdfgrid", "subdivision"};
+    static const char *const names[] = {"deformable", "ellipsoids", "sdfgrid", "subdivision"};
     for (size_t i = 0; i < sizeof names / sizeof *names; ++i) {
         char body[128], want[128];
         snprintf(body, sizeof body, "\n<shape type=\"cube\"/><shape type=\"%s\"/>", names[i]);
@@ -1005,13 +1005,13 @@ static void what_is_not_known_is_named_and_ignored(void **state)
 {
     Kit *k = *state;
     kit_scene(k, "<shape type=\"cube\" colour=\"red\">\n<float name=\"wobble\" value=\"1\"/>\n"
-                 "<hide name=\"to_world\"/></shape>\n<wibble/>\n<shape type=\"hair\"/>");
+                 "<hide name=\"to_world\"/></shape>\n<wibble/>\n<shape type=\"sdfgrid\"/>");
     assert_non_null(strstr(k->warnings, "scene.xml:2:1: the attribute 'colour' of <shape> is not known"));
     assert_non_null(
         strstr(k->warnings, "scene.xml:3:1: <float name=\"wobble\"> is not supported in <shape type=\"cube\">"));
     assert_non_null(strstr(k->warnings, "scene.xml:4:1: <hide name=\"to_world\"> is not supported"));
     assert_non_null(strstr(k->warnings, "scene.xml:5:1: <wibble> is not supported"));
-    assert_non_null(strstr(k->warnings, "scene.xml:6:1: the shape 'hair' is not supported and is left out"));
+    assert_non_null(strstr(k->warnings, "scene.xml:6:1: the shape 'sdfgrid' is not supported and is left out"));
 }
 
 static void both_spellings_mean_the_same(void **state)

@@ -34,8 +34,13 @@ static const Plugins plugins[] = {
     {"<shape type=\"rectangle\"><bsdf type=\"", "\">" CONTROL "</bsdf></shape>", "twosided mask coating roughcoating",
      "bumpmap normalmap"}, // maps without their texture
     {"<shape type=\"rectangle\"><bsdf type=\"", "\">" CONTROL CONTROL "</bsdf></shape>", "blendbsdf twosided", ""},
-    {"<shape type=\"", "\"/>", "sphere cylinder disk rectangle cube",
-     "hair heightfield deformable linearcurve bsplinecurve sdfgrid ellipsoids ellipsoidsmesh"},
+    {"<shape type=\"", "\"/>", "sphere cylinder disk rectangle cube", "deformable sdfgrid ellipsoids ellipsoidsmesh"},
+    {"<shape type=\"", "\"><string name=\"filename\" value=\"curves.txt\"/></shape>", "linearcurve bsplinecurve hair",
+     ""},
+    {"<shape type=\"",
+     "\"><texture type=\"checkerboard\"/><integer name=\"width\" value=\"4\"/><integer "
+     "name=\"height\" value=\"3\"/></shape>",
+     "heightfield", ""},
     {"<emitter type=\"", "\"/>", "point spot directional constant sky sun sunsky projector",
      "timed_sunsky collimated volume astroobject"},
     {"<shape type=\"rectangle\"><emitter type=\"", "\"/></shape>", "area", "directionalarea volume projector"},
@@ -77,6 +82,7 @@ static void check_names(Kit *k, const Plugins *p, const char *names, bool known)
 static void all_that_is_published_loads(void **state)
 {
     Kit *k = *state;
+    kit_write(k, "curves.txt", "0 0 0 0.1\n1 0 0 0.1\n2 0 0 0.1\n3 0 0 0.1\n");
     for (size_t i = 0; i < sizeof plugins / sizeof *plugins; ++i) {
         check_names(k, &plugins[i], plugins[i].known, true);
         check_names(k, &plugins[i], plugins[i].others, false);
@@ -200,6 +206,100 @@ static void spectra_in_lists(void **state)
 
 // ---- shapes, lights and sensors ---------------------------------------------------------------------------------
 
+/** Values of Mitsuba 3, which has exact tubes; ours have 12 sides, cos(pi / 12) = 0.966. */
+static void curves_become_tubes(void **state)
+{
+    Kit *k = *state;
+    kit_write(k, "c.txt",
+              "# two curves\n0 0 0 0.1\n1 0 0 0.1\r\n2 0 0 0.1\n3 0 0 0.1\n4 0 0 0.1\n \n\n0 2 0 0.2\n"
+              "1 2 0 0.2\n2 2 0 0.2\n3 2 0 0.2");
+    static const struct {
+        const char *type;
+        Vec3 lo, hi;
+    } cases[] = {{"linearcurve", {-0.2f, -0.1f, -0.2f}, {8.1f, 4.2f, 0.2f}},
+                 {"bsplinecurve", {2, -0.1f, -0.2f}, {6, 4.2f, 0.2f}}};
+    for (size_t i = 0; i < 2; ++i) {
+        char body[512];
+        snprintf(body, sizeof body,
+                 "<shape type=\"%s\"><string name=\"filename\" value=\"c.txt\"/><transform name=\"to_world\"><scale "
+                 "value=\"2\"/></transform></shape>",
+                 cases[i].type);
+        const SheenScene *s = kit_scene(k, body);
+        kit_assert_v3(s->bounds.lo, cases[i].lo, 0.007f); // the transform leaves the radius
+        kit_assert_v3(s->bounds.hi, cases[i].hi, 0.007f);
+        const SheenMesh *m = &s->shapes[0].mesh;
+        for (uint32_t t = 0; t < m->n_triangles; ++t) { // outward, as the normals
+            const uint32_t *v = m->triangles[t];
+            Vec3 face = v3_cross(v3_sub(m->p[v[1]], m->p[v[0]]), v3_sub(m->p[v[2]], m->p[v[0]]));
+            assert_true(v3_dot(face, m->n[v[0]]) > 0.0f);
+        }
+        for (uint32_t v = 0; v < m->n_vertices; ++v) {
+            if (i == 0 && (m->p[v].x < 0.001f || m->p[v].y > 1.0f || m->p[v].x > 7.999f)) continue;
+            float want = i == 0 ? m->p[v].x / 14.0f : (m->p[v].x - 2.0f) / 6.0f; // of 7 and of 3 segments
+            if (m->p[v].y < 1.0f) assert_float_equal(1.0f - m->uv[v].y, want, 1e-5f);
+            assert_float_equal(v3_length(m->n[v]), 1.0f, 1e-5f);
+        }
+        assert_int_equal(told(k), 0);
+    }
+    // Version 0.6: one radius for all, three numbers a line or their bytes.
+    kit_write(k, "h.txt", "0 0 0\n0 0 1\n\n1 0 0\n1 0 1\n1 0 2\n");
+    const float strands[] = {0, 0, 0, 0, 0, 1, INFINITY, 1, 0, 0, 1, 0, 1, 1, 0, 2};
+    char bytes[15 + sizeof strands] = "BINARY_HAIR\5";
+    memcpy(bytes + 15, strands, sizeof strands);
+    kit_write_bytes(k, "h.bin", bytes, sizeof bytes);
+    Bounds bounds[2];
+    for (int i = 0; i < 2; ++i) {
+        bounds[i] = kit_scene(k, i ? "<shape type=\"hair\"><string name=\"filename\" value=\"h.bin\"/></shape>"
+                                   : "<shape type=\"hair\"><string name=\"filename\" value=\"h.txt\"/></shape>")
+                        ->bounds;
+        assert_int_equal(k->scene->n_triangles, 3 * 12 * 2);
+        kit_assert_v3(bounds[i].lo, v3(-0.025f, -0.025f, 0), 0.002f);
+        kit_assert_v3(bounds[i].hi, v3(1.025f, 0.025f, 2), 0.002f);
+    }
+    static const char *const bad[] = {"0 0 0\n1 1 1\n", "0 0 0 x\n", "0 0 0 1 2\n", "0 0 0 nan\n", "BINARY_HAIR"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; ++i) {
+        kit_write(k, "bad.txt", bad[i]);
+        kit_refused(k, "<shape type=\"linearcurve\"><string name=\"filename\" value=\"bad.txt\"/></shape>",
+                    SHEEN_ERR_PARSE, "scene.xml:2:1", "is not a list of the points of curves");
+    }
+    kit_write_bytes(k, "h.bin", bytes, sizeof bytes - 1);
+    kit_refused(k, "<shape type=\"hair\"><string name=\"filename\" value=\"h.bin\"/></shape>", SHEEN_ERR_PARSE,
+                "scene.xml:2:1", "is not a list of the points of curves");
+    kit_write(k, "empty.txt", "\n\n0 0 0 1\n");
+    assert_int_equal(kit_scene(k, "<shape type=\"linearcurve\"><string name=\"filename\" value=\"empty.txt\"/>"
+                                  "</shape>")
+                         ->n_triangles,
+                     0);
+}
+
+/** Heights are the picture's, its first row at y = -1. */
+static void height_fields(void **state)
+{
+    Kit *k = *state;
+    const unsigned char pfm[] = "Pf\n3 2\n-1.0\n";
+    const float rows[2][3] = {{0.1f, 0.2f, 0.3f}, {0.4f, 0.5f, 0.6f}}; // a PFM's last row comes first
+    unsigned char bytes[sizeof pfm - 1 + sizeof rows];
+    memcpy(bytes, pfm, sizeof pfm - 1);
+    memcpy(bytes + sizeof pfm - 1, rows, sizeof rows);
+    kit_write_bytes(k, "h.pfm", bytes, sizeof bytes);
+    const SheenScene *s = kit_scene(k, "<shape type=\"heightfield\"><string name=\"filename\" value=\"h.pfm\"/><float "
+                                       "name=\"scale\" value=\"10\"/></shape>");
+    const SheenMesh *m = &s->shapes[0].mesh;
+    assert_int_equal(m->n_triangles, 4);
+    assert_non_null(m->n);
+    kit_assert_v3(m->p[0], v3(-1, -1, 4), 1e-6f);
+    kit_assert_v3(m->p[1], v3(0, -1, 5), 1e-6f);
+    kit_assert_v3(m->p[5], v3(1, 1, 3), 1e-6f);
+    for (uint32_t i = 0; i < 6; ++i) assert_true(m->n[i].z > 0.0f);
+    assert_int_equal(told(k), 0);
+    s = kit_scene(k, "<shape type=\"heightfield\"><string name=\"filename\" value=\"h.pfm\"/><boolean "
+                     "name=\"shadingNormals\" value=\"false\"/></shape>");
+    assert_null(s->shapes[0].mesh.n);
+    kit_refused(k, "<shape type=\"heightfield\"/>", SHEEN_ERR_PARSE, "scene.xml:2:1", "needs a 'filename'");
+    kit_refused(k, "<shape type=\"heightfield\"><texture type=\"checkerboard\"/></shape>", SHEEN_ERR_PARSE,
+                "scene.xml:2:1", "2 to 16384 heights");
+}
+
 /** In version 0.6 a shape without a material that holds a medium is not seen; in 3 it is diffuse. */
 static void borders_of_media(void **state)
 {
@@ -271,6 +371,8 @@ int main(void)
         KIT_TEST(spectra_in_lists),
         KIT_TEST(borders_of_media),
         KIT_TEST(projectors_and_pictures_of_spots),
+        KIT_TEST(curves_become_tubes),
+        KIT_TEST(height_fields),
         KIT_TEST(sensors_of_all_kinds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
