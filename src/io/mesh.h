@@ -56,8 +56,8 @@ SHEEN_NODISCARD SheenStatus sheen_obj_parse(const char *text, size_t size, const
 
 /**
  * Reads PLY, ASCII or binary of either byte order: x y z, nx ny nz, (u v | s t | texture_u texture_v | texture_s
- * texture_t) of `vertex`, vertex_indices or vertex_index of `face`, and (r g b | red green blue) of both, integers
- * over their type's largest value; everything else is skipped.
+ * texture_t) of `vertex`, vertex_indices or vertex_index of `face` and `tristrips`, and (r g b | red green blue) of
+ * vertices and faces, integers over their type's largest value; everything else is skipped.
  * Polygons are cut (io/polygon.h). Errors: SHEEN_ERR_PARSE (`FILE: ...`, with a line where there is one),
  * SHEEN_ERR_NOMEM.
  */

@@ -238,6 +238,10 @@ static SheenStatus read_property(Reader *r, Word w, MtlMaterial *m)
     }
     if (is(w, "Pr")) return read_number(r, "Pr", &m->roughness);
     if (is(w, "Pm")) return read_number(r, "Pm", &m->metallic);
+    if (is(w, "Ps")) return read_number(r, "Ps", &m->sheen);
+    if (is(w, "Pc")) return read_number(r, "Pc", &m->clearcoat);
+    if (is(w, "Pcr")) return read_number(r, "Pcr", &m->clearcoat_roughness);
+    if (is(w, "aniso")) return read_number(r, "aniso", &m->anisotropy);
     if (is(w, "Ns")) return read_number(r, "Ns", &m->shininess);
     if (is(w, "Ni")) return read_number(r, "Ni", &m->ior);
     if (is(w, "d")) return read_opacity(r, m, false);
@@ -249,17 +253,20 @@ static SheenStatus read_property(Reader *r, Word w, MtlMaterial *m)
     }
     if (is(w, "map_Kd")) return read_map(r, &m->diffuse_map);
     if (is(w, "map_d")) return read_map(r, &m->opacity_map);
+    if (is(w, "map_Pr")) return read_map(r, &m->roughness_map);
+    if (is(w, "map_Pm")) return read_map(r, &m->metallic_map);
     return read_map(r, &m->normal_map);
 }
 
 static SheenStatus read_statement(Reader *r)
 {
-    static const char *const read[] = {"Kd", "Ks", "Ka", "Ke",    "Tf",     "Ns",    "Ni",  "d",
-                                       "Tr", "Pr", "Pm", "illum", "map_Kd", "map_d", "norm"};
+    static const char *const read[] = {"Kd",   "Ks", "Ka", "Ke",  "Tf",    "Ns",     "Ni",
+                                       "d",    "Tr", "Pr", "Pm",  "illum", "map_Kd", "map_d",
+                                       "norm", "Ps", "Pc", "Pcr", "aniso", "map_Pr", "map_Pm"};
     // What pictures hardly show, and what programs write beside it.
-    static const char *const silent[] = {"map_Ka", "map_Ks", "map_Ns",  "map_aat", "sharpness", "Km",     "Kt",
-                                         "Ps",     "Pc",     "Pcr",     "aniso",   "anisor",    "map_Pr", "map_Pm",
-                                         "map_Ps", "map_Pc", "map_Pcr", "map_RMA", "map_ORM",   "refl",   "map_refl"};
+    static const char *const silent[] = {"map_Ka",  "map_Ks",  "map_Ns",  "map_aat", "sharpness",
+                                         "Km",      "Kt",      "anisor",  "map_Ps",  "map_Pc",
+                                         "map_Pcr", "map_RMA", "map_ORM", "refl",    "map_refl"};
     Word w = next_word(r);
     if (w.length == 0) return SHEEN_OK;
     if (*w.text == '#') { // "# Blender 4.2.0 MTL File: ..."

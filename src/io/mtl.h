@@ -20,24 +20,26 @@ typedef struct MtlMap {
 /** What a library says of a material, in its own terms. */
 typedef struct MtlMaterial {
     const char *name;
-    const char *library; // file name, for messages
-    uint32_t line;       // of newmtl
-    Rgb diffuse;         // Kd
-    Rgb specular;        // Ks
-    Rgb ambient;         // Ka
-    Rgb emission;        // Ke
-    Rgb filter;          // Tf, what a body lets through
-    float shininess;     // Ns
-    float ior;           // Ni
-    float opacity;       // d, or 1 - Tr
-    float roughness;     // Pr, negative when not given
-    float metallic;      // Pm, negative when not given
-    int illum;           // 2 when not given
-    bool has_opacity;    // by d, which counts more than Tr
+    const char *library;                                     // file name, for messages
+    uint32_t line;                                           // of newmtl
+    Rgb diffuse;                                             // Kd
+    Rgb specular;                                            // Ks
+    Rgb ambient;                                             // Ka
+    Rgb emission;                                            // Ke
+    Rgb filter;                                              // Tf, what a body lets through
+    float shininess;                                         // Ns
+    float ior;                                               // Ni
+    float opacity;                                           // d, or 1 - Tr
+    float roughness;                                         // Pr, negative when not given
+    float metallic;                                          // Pm, negative when not given
+    float sheen, clearcoat, clearcoat_roughness, anisotropy; // Ps, Pc, Pcr, aniso
+    int illum;                                               // 2 when not given
+    bool has_opacity;                                        // by d, which counts more than Tr
     bool has_filter;
     bool of_blender; // the library says that Blender wrote it
     MtlMap diffuse_map, opacity_map;
-    MtlMap normal_map; // norm; of Blender map_Bump, which is its name for normals
+    MtlMap roughness_map, metallic_map; // map_Pr, map_Pm
+    MtlMap normal_map;                  // norm; of Blender map_Bump, which is its name for normals
 } MtlMaterial;
 
 typedef struct MtlLibrary {

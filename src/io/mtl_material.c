@@ -167,23 +167,43 @@ static void make_mirror(const MtlMaterial *m, SheenMaterial *out)
     out->specular_reflectance = sheen_texture_constant(clamp_color(m->specular));
 }
 
+/** A number in [0, 1], or the picture in its place. */
+static SheenStatus read_number(MtlReader *r, const MtlMaterial *m, const MtlMap *map, float value, SheenTexture *out)
+{
+    SheenStatus s = read_texture(r, m, map, rgb_gray(1.0f), true, out);
+    if (out->kind == SHEEN_TEXTURE_CONSTANT) out->value = rgb_gray(clampf(value, 0.0f, 1.0f));
+    return s;
+}
+
 /** Pr and Pm, or what Blender hides in Ns and, for metal, in Ka: roughness 1 - sqrt(Ns / 1000), metallic share Ka. */
 static SheenStatus make_principled(MtlReader *r, const MtlMaterial *m, SheenMaterial *out)
 {
     SheenPrincipled *p = SHEEN_ARENA_NEW(r->arena, SheenPrincipled, 1);
     if (!p) return no_memory(r);
-    SheenTexture *zero[] = {&p->anisotropic, &p->spec_trans, &p->spec_tint,       &p->sheen,     &p->sheen_tint,
-                            &p->flatness,    &p->clearcoat,  &p->clearcoat_gloss, &p->diff_trans};
-    for (size_t i = 0; i < sizeof zero / sizeof *zero; ++i) *zero[i] = sheen_texture_constant(rgb_gray(0.0f));
+    const struct {
+        SheenTexture *to;
+        float value;
+    } numbers[] = {{&p->anisotropic, m->anisotropy},
+                   {&p->spec_trans, 0.0f},
+                   {&p->spec_tint, 0.0f},
+                   {&p->sheen, m->sheen},
+                   {&p->sheen_tint, 0.0f},
+                   {&p->flatness, 0.0f},
+                   {&p->clearcoat, m->clearcoat},
+                   {&p->clearcoat_gloss, 1.0f - m->clearcoat_roughness},
+                   {&p->diff_trans, 0.0f}};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; ++i)
+        *numbers[i].to = sheen_texture_constant(rgb_gray(clampf(numbers[i].value, 0.0f, 1.0f)));
     bool metal = m->of_blender && (m->illum == 3 || m->illum == 6);
     float metallic = m->metallic >= 0.0f ? m->metallic : metal ? m->ambient.r : 0.0f;
     float roughness = m->roughness >= 0.0f ? m->roughness : 1.0f - sqrtf(clampf(m->shininess / 1000.0f, 0.0f, 1.0f));
-    p->metallic = sheen_texture_constant(rgb_gray(clampf(metallic, 0.0f, 1.0f)));
     out->kind = SHEEN_MATERIAL_PRINCIPLED;
     out->principled = p;
     out->ior = 1.5f; // what Blender's specular level of 0.5 stands for
-    out->alpha_u = sheen_texture_constant(rgb_gray(clampf(roughness, 0.0f, 1.0f)));
-    return read_diffuse(r, m, 1.0f, &out->reflectance);
+    // A map gives all of a number: what stands beside it is an exporter's default.
+    SheenStatus s = read_number(r, m, &m->metallic_map, metallic, &p->metallic);
+    if (!s) s = read_number(r, m, &m->roughness_map, roughness, &out->alpha_u);
+    return s ? s : read_diffuse(r, m, 1.0f, &out->reflectance);
 }
 
 /** Both parts together reflect no more than all. */
@@ -205,7 +225,8 @@ static SheenStatus make_opaque(MtlReader *r, const MtlMaterial *m, SheenMaterial
         return SHEEN_OK;
     }
     out->two_sided = true;
-    if (m->of_blender || m->roughness >= 0.0f || m->metallic >= 0.0f) return make_principled(r, m, out);
+    bool physical = m->roughness >= 0.0f || m->metallic >= 0.0f || m->roughness_map.file || m->metallic_map.file;
+    if (m->of_blender || physical) return make_principled(r, m, out);
     if (is_mirror(m)) {
         make_mirror(m, out);
         return SHEEN_OK;

@@ -33,7 +33,7 @@ typedef struct Reader {
     Array corners;   // Vec3: their positions
     uint32_t *table; // hash of corners: index of a vertex, or SHEEN_NONE
     uint32_t table_size;
-    bool has_uv, has_n, warned, warned_range;
+    bool has_uv, has_n, warned, warned_range, warned_face;
     SheenArena *arena;
     bool parts;      // wanted: the following is kept
     ObjRun run;      // in the making: its material, smoothing and object count
@@ -255,9 +255,11 @@ static SheenStatus read_face(Reader *r)
             !push(&r->corners, &((const Vec3 *)r->p.data)[c.p], sizeof(Vec3)))
             return no_memory(r);
     }
-    if (r->face.n < 3)
-        return sheen_fail(r->log, SHEEN_ERR_PARSE, "%s:%u: a face needs three vertices", r->name, r->line);
-    return add_polygon(r);
+    if (r->face.n >= 3) return add_polygon(r);
+    if (!r->warned_face)
+        sheen_warn(r->log, "%s:%u: a face of %u vertices is left out, as others may be", r->name, r->line, r->face.n);
+    r->warned_face = true;
+    return SHEEN_OK;
 }
 
 // ---- parts ------------------------------------------------------------------------------------------------------

@@ -22,7 +22,8 @@ typedef enum Role {
     TEXTURE = NORMAL + 3,
     COLOR = TEXTURE + 2,
     FACE_COLOR = COLOR + 3,
-    INDICES = FACE_COLOR + 3
+    INDICES = FACE_COLOR + 3,
+    STRIPS
 } Role;
 
 typedef struct Property {
@@ -33,7 +34,7 @@ typedef struct Property {
 
 typedef struct Element {
     uint64_t count;
-    bool vertex, face;
+    bool vertex, face, strips;
     uint32_t first, n; // properties
 } Element;
 
@@ -116,7 +117,8 @@ static int role_of(const Element *e, Word name, bool list)
                  {"ny", NORMAL + 1},     {"nz", NORMAL + 2},        {"u", TEXTURE},         {"v", TEXTURE + 1},
                  {"s", TEXTURE},         {"t", TEXTURE + 1},        {"texture_u", TEXTURE}, {"texture_v", TEXTURE + 1},
                  {"texture_s", TEXTURE}, {"texture_t", TEXTURE + 1}};
-    if (e->face && list && (is(name, "vertex_indices") || is(name, "vertex_index"))) return INDICES;
+    if (list && (is(name, "vertex_indices") || is(name, "vertex_index")))
+        return e->face ? INDICES : e->strips ? STRIPS : SKIP;
     static const char *const colors[] = {"r", "g", "b", "red", "green", "blue"};
     for (int i = 0; (e->vertex || e->face) && !list && i < 6; ++i)
         if (is(name, colors[i])) return (e->vertex ? COLOR : FACE_COLOR) + i % 3;
@@ -132,8 +134,11 @@ static SheenStatus read_element(Reader *r, const Word w[], int n)
     const char *p = w[2].text;
     if (!sheen_integer_parse(&p, p + w[2].length, &count) || count < 0) return fail_at(r, "bad number of elements");
     if (r->n_elements == MAX_ELEMENTS) return fail_at(r, "too many elements");
-    r->elements[r->n_elements++] = (Element){
-        .count = (uint64_t)count, .vertex = is(w[1], "vertex"), .face = is(w[1], "face"), .first = r->n_properties};
+    r->elements[r->n_elements++] = (Element){.count = (uint64_t)count,
+                                             .vertex = is(w[1], "vertex"),
+                                             .face = is(w[1], "face"),
+                                             .strips = is(w[1], "tristrips"),
+                                             .first = r->n_properties};
     return SHEEN_OK;
 }
 
@@ -312,6 +317,13 @@ static SheenStatus add_polygon(Reader *r, uint32_t n, const Vec3 p[])
     return SHEEN_OK;
 }
 
+static SheenStatus check_index(const Reader *r, double index, const MeshData *mesh)
+{
+    if (index >= 0.0 && index < (double)mesh->n_vertices && index == floor(index)) return SHEEN_OK;
+    return sheen_fail(r->log, SHEEN_ERR_PARSE, "%s: vertex index %g is out of range: there are %u vertices", r->name,
+                      index, mesh->n_vertices);
+}
+
 static SheenStatus read_face(Reader *r, const Property *p, const MeshData *mesh)
 {
     uint32_t n = 0;
@@ -320,11 +332,8 @@ static SheenStatus read_face(Reader *r, const Property *p, const MeshData *mesh)
     for (uint32_t i = 0; !s && i < n; ++i) {
         double index;
         s = read_value(r, p->type, &index);
-        if (s) return s;
-        if (!(index >= 0.0 && index < (double)mesh->n_vertices && index == floor(index)))
-            return sheen_fail(r->log, SHEEN_ERR_PARSE, "%s: vertex index %g is out of range: there are %u vertices",
-                              r->name, index, mesh->n_vertices);
-        r->face[i] = (uint32_t)index;
+        if (!s) s = check_index(r, index, mesh);
+        if (!s) r->face[i] = (uint32_t)index;
     }
     return s ? s : add_polygon(r, n, mesh->p);
 }
@@ -368,6 +377,37 @@ static SheenStatus read_whole_face(Reader *r, const Element *e, const MeshData *
     return SHEEN_OK;
 }
 
+/** Strips of triangles, each vertex one more triangle with the two before it; -1 begins another strip. */
+static SheenStatus read_strips(Reader *r, const Property *p, const MeshData *mesh)
+{
+    const uint32_t first = r->n_triangles;
+    uint32_t n = 0, length = 0, before[2] = {0, 0};
+    SheenStatus s = read_count(r, p, &n);
+    for (uint32_t i = 0; !s && i < n; ++i) {
+        double index;
+        s = read_value(r, p->type, &index);
+        if (!s && index == -1.0) {
+            length = 0;
+            continue;
+        }
+        if (!s) s = check_index(r, index, mesh);
+        if (s) return s;
+        const uint32_t v = (uint32_t)index, odd = length & 1, a = before[0], b = before[1];
+        before[0] = b, before[1] = v;
+        if (++length < 3 || a == b || b == v || a == v) continue; // joints of strips
+        if (!sheen_reserve((void **)&r->triangles, &r->triangle_capacity, (uint64_t)r->n_triangles + 1,
+                           sizeof *r->triangles))
+            return no_memory(r);
+        const uint32_t t[3] = {odd ? b : a, odd ? a : b, v};
+        memcpy(r->triangles[r->n_triangles++], t, sizeof t);
+    }
+    if (s || !r->has_face_colors) return s;
+    if (!sheen_reserve((void **)&r->face_colors, &r->face_color_capacity, r->n_triangles, sizeof *r->face_colors))
+        return no_memory(r);
+    for (uint32_t i = first; i < r->n_triangles; ++i) r->face_colors[i] = rgb_gray(0.0f);
+    return SHEEN_OK;
+}
+
 static SheenStatus read_vertex(Reader *r, const Element *e, MeshData *out, uint32_t index)
 {
     float value[INDICES] = {0};
@@ -399,7 +439,9 @@ static SheenStatus read_elements(Reader *r, MeshData *out)
             for (uint32_t j = 0; !s && j < e->n; ++j) {
                 const Property *p = &r->properties[e->first + j];
                 double ignored;
-                s = p->list ? skip_list(r, p) : read_value(r, p->type, &ignored);
+                s = p->role == STRIPS ? read_strips(r, p, out)
+                    : p->list         ? skip_list(r, p)
+                                      : read_value(r, p->type, &ignored);
             }
         }
     }

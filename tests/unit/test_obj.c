@@ -110,9 +110,20 @@ static void bad_lines_are_refused_with_their_number(void **state)
     refused(k, joined(k, square, "f 1 2 5\n"), "mesh.obj:5: vertex index 5 is out of range: there are 4");
     refused(k, joined(k, square, "f 1 2 0\n"), "mesh.obj:5: vertex index 0");
     refused(k, joined(k, square, "f -5 2 1\n"), "mesh.obj:5: vertex index -5");
-    refused(k, joined(k, square, "f 1 2\n"), "mesh.obj:5: a face needs three vertices");
     refused(k, joined(k, square, "f 1 2 x\n"), "mesh.obj:5: expected a vertex index");
     refused(k, joined(k, square, "f 1 2 99999999999999999999\n"), "mesh.obj:5: expected a vertex index");
+}
+
+/** They show nothing: a file with some among its faces is read. */
+static void faces_of_two_vertices_are_left_out(void **state)
+{
+    Kit *k = *state;
+    MeshData m;
+    const char *text = joined(k, square, "f 1 2\nf 1\nf 1 2 3\nf\n");
+    assert_int_equal(parse(k, text, &m), SHEEN_OK);
+    assert_int_equal(m.n_triangles, 1);
+    assert_int_equal(k->n_warnings, 1);
+    assert_non_null(strstr(k->warnings, "mesh.obj:5: a face of 2 vertices is left out, as others may be"));
 }
 
 static void faces_do_without_normals_and_uv_that_are_not_there(void **state)
@@ -271,6 +282,7 @@ int main(void)
         KIT_TEST(equal_corners_are_shared_and_no_others),
         KIT_TEST(line_ends_comments_and_groups_do_not_matter),
         KIT_TEST(bad_lines_are_refused_with_their_number),
+        KIT_TEST(faces_of_two_vertices_are_left_out),
         KIT_TEST(faces_do_without_normals_and_uv_that_are_not_there),
         KIT_TEST(parts_are_told),
         KIT_TEST(non_finite_vertices_are_read_as_such),

@@ -134,6 +134,11 @@ static void blender_and_its_principled_materials(void **state)
     assert_int_equal(m->kind, SHEEN_MATERIAL_PRINCIPLED);
     assert_float_equal(m->alpha_u.value.r, 0.2f, 1e-6f);
     kit_assert_rgb(m->principled->metallic.value, rgb_gray(0.3f), 1e-6f);
+    m = material(k, "Kd .1 .2 .3\nPr 0.2\nPs 0.4\nPc 0.5\nPcr 0.6\naniso 0.7\nanisor 0.8");
+    assert_float_equal(m->principled->sheen.value.r, 0.4f, 1e-6f);
+    assert_float_equal(m->principled->clearcoat.value.r, 0.5f, 1e-6f);
+    assert_float_equal(m->principled->clearcoat_gloss.value.r, 0.4f, 1e-6f);
+    assert_float_equal(m->principled->anisotropic.value.r, 0.7f, 1e-6f);
 }
 
 /** A picture of one pixel, sRGB 188: about 0.5. */
@@ -144,6 +149,22 @@ static void write_pixel(Kit *k, const char *name)
     char path[256];
     kit_path(k, name, path);
     assert_int_equal(sheen_image_write(path, &view, 0.0f, &k->log), SHEEN_OK);
+}
+
+/** Raw numbers, not colours; they take the place of the number beside them. */
+static void pictures_of_roughness_and_metal(void **state)
+{
+    Kit *k = *state;
+    write_pixel(k, "half.png");
+    const SheenMaterial *m = material(k, "Kd .1 .2 .3\nPr 0.1\nmap_Pr -clamp on half.png\nmap_Pm half.png");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_PRINCIPLED);
+    assert_float_equal(sheen_texture_mean(&m->alpha_u).g, 188.0f / 255.0f, 1e-3f);
+    assert_float_equal(sheen_texture_mean(&m->principled->metallic).g, 188.0f / 255.0f, 1e-3f);
+    assert_int_equal(m->alpha_u.wrap, SHEEN_WRAP_CLAMP);
+    m = material(k, "Kd .1 .2 .3\nPr 0.1\nPm 0.6\nmap_Pr none.png\nmap_Pm none.png"); // with warnings
+    assert_float_equal(m->alpha_u.value.g, 0.1f, 1e-6f);
+    assert_float_equal(m->principled->metallic.value.g, 0.6f, 1e-6f);
+    assert_non_null(strstr(k->warnings, "cannot open the picture 'none.png'"));
 }
 
 static void pictures_are_multiplied_by_the_colour(void **state)
@@ -308,6 +329,7 @@ int main(void)
         KIT_TEST(blender_and_its_principled_materials),
         KIT_TEST(maps_of_normals),
         KIT_TEST(what_is_partly_transparent_is_a_mask),
+        KIT_TEST(pictures_of_roughness_and_metal),
         KIT_TEST(pictures_are_multiplied_by_the_colour),
         KIT_TEST(libraries_are_looked_for),
         KIT_TEST(normals_follow_the_smoothing_groups),

@@ -34,6 +34,26 @@ static void ascii_with_other_elements(void **state)
     assert_float_equal(m.uv[3].y, 1.0f, 0.0f);
 }
 
+/** Each further vertex is a triangle, every second turned; -1 begins another strip, a repeated vertex joins two. */
+static void strips_of_triangles(void **state)
+{
+    Kit *k = *state;
+    MeshData m;
+    static const char strips[] = "ply\r\nformat ascii 1.0\r\nelement vertex 5\r\nproperty float x\r\nproperty float "
+                                 "y\r\nproperty float z\r\nelement tristrips 1\r\nproperty list int int "
+                                 "vertex_indices\r\nend_header\r\n0 0 0\r\n1 0 0\r\n0 1 0\r\n1 1 0\r\n0 2 0\r\n"
+                                 "14 0 1 2 3 4 -1 2 3 4 4 0 0 1 2\r\n";
+    assert_int_equal(parse(k, strips, sizeof strips - 1, &m), SHEEN_OK);
+    const uint32_t want[][3] = {{0, 1, 2}, {2, 1, 3}, {2, 3, 4}, {2, 3, 4}, {1, 0, 2}};
+    assert_int_equal(m.n_triangles, 5);
+    assert_memory_equal(m.triangles, want, sizeof want);
+    char bad[sizeof strips];
+    memcpy(bad, strips, sizeof bad);
+    strcpy(strstr(bad, "14 0"), "3 0 1 5\n");
+    assert_int_equal(parse(k, bad, strlen(bad), &m), SHEEN_ERR_PARSE);
+    assert_non_null(strstr(k->error, "vertex index 5 is out of range"));
+}
+
 /** Appends the low `size` bytes of a value in either order. */
 static void put(unsigned char *buffer, size_t *n, uint64_t bits, unsigned size, bool big)
 {
@@ -176,11 +196,9 @@ static void smooth_normals_are_weighted_by_angle(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        KIT_TEST(ascii_with_other_elements),
-        KIT_TEST(binary_of_both_orders_and_all_types),
-        KIT_TEST(broken_files_are_refused),
-        KIT_TEST(an_empty_mesh_is_no_error),
-        KIT_TEST(smooth_normals_are_weighted_by_angle),
+        KIT_TEST(ascii_with_other_elements),           KIT_TEST(strips_of_triangles),
+        KIT_TEST(binary_of_both_orders_and_all_types), KIT_TEST(broken_files_are_refused),
+        KIT_TEST(an_empty_mesh_is_no_error),           KIT_TEST(smooth_normals_are_weighted_by_angle),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
