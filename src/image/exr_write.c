@@ -16,7 +16,8 @@ typedef struct ExrJob {
     const ImageTarget *target;
     exr_context_t context;
     int part;
-    ExrChannel *channels; // sorted by name, as the format wants them
+    exr_result_t (*compress)(exr_encode_pipeline_t *pipeline); // the library's
+    ExrChannel *channels;                                      // sorted by name, as the format wants them
     size_t n_channels;
 } ExrJob;
 
@@ -85,7 +86,20 @@ static void connect_channels(const ExrJob *job, const exr_chunk_info_t *info, ex
     }
 }
 
-static exr_result_t write_chunks(const ExrJob *job)
+/**
+ * Bytes as many as the chunk's own are read as not compressed, but OpenEXRCore 3.1 writes what it compressed to exactly
+ * so many: the chunk would be read as noise.
+ */
+static exr_result_t compress(exr_encode_pipeline_t *pipeline)
+{
+    const ExrJob *job = pipeline->encoding_user_data;
+    exr_result_t result = job->compress(pipeline);
+    if (!result && pipeline->compressed_buffer && pipeline->compressed_bytes == pipeline->packed_bytes)
+        memcpy(pipeline->compressed_buffer, pipeline->packed_buffer, pipeline->packed_bytes);
+    return result;
+}
+
+static exr_result_t write_chunks(ExrJob *job)
 {
     exr_encode_pipeline_t pipeline = EXR_ENCODE_PIPELINE_INITIALIZER;
     int32_t lines = 0, height = (int32_t)job->target->view->height;
@@ -98,7 +112,12 @@ static exr_result_t write_chunks(const ExrJob *job)
                         : exr_encoding_update(job->context, job->part, &info, &pipeline);
         if (result) break;
         connect_channels(job, &info, &pipeline);
-        if (y == 0) result = exr_encoding_choose_default_routines(job->context, job->part, &pipeline);
+        if (y == 0) {
+            result = exr_encoding_choose_default_routines(job->context, job->part, &pipeline);
+            job->compress = pipeline.compress_fn;
+            pipeline.encoding_user_data = job;
+            if (job->compress) pipeline.compress_fn = compress;
+        }
         if (!result) result = exr_encoding_run(job->context, job->part, &pipeline);
     }
     exr_encoding_destroy(job->context, &pipeline);
