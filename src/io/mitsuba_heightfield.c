@@ -13,7 +13,7 @@ static bool find_heights(Mitsuba *m, SheenXml *e, SheenTexture *out)
     }
     SheenXml *texture = sheen_mi_nested(m, e, "texture");
     if (texture)
-        *out = sheen_mi_texture_of(m, texture, rgb_gray(0.0f));
+        *out = sheen_mi_texture_of(m, texture, MITSUBA_INDEX, rgb_gray(0.0f));
     else
         sheen_mi_fail(m, SHEEN_ERR_PARSE, e, "a heightfield needs a 'filename' or a texture");
     return !m->status;

@@ -263,7 +263,7 @@ SheenTexture sheen_mi_factor(Mitsuba *m, const SheenXml *e, const char *name, fl
     SheenXml *value = c ? sheen_mi_resolve(m, c) : NULL;
     if (!value) return sheen_texture_constant(rgb_gray(otherwise));
     if (strcmp(value->tag, "float") != 0 && strcmp(value->tag, "integer") != 0)
-        return sheen_mi_texture_of(m, value, MITSUBA_REFLECTANCE, rgb_gray(otherwise));
+        return sheen_mi_texture_of(m, value, hi > 1.0f ? MITSUBA_INDEX : MITSUBA_REFLECTANCE, rgb_gray(otherwise));
     value->used = true;
     float x = (float)sheen_mi_float(m, e, name, (double)otherwise), good = clampf(x, lo, hi);
     if (good != x)

@@ -121,6 +121,12 @@ static void rough_diffuse_and_sheets(void **state)
     assert_float_equal(m->principled->diff_trans.value.g, 1.5f, 0.0f);
     assert_float_equal(m->principled->spec_trans.value.g, 0.25f, 0.0f);
     assert_float_equal(m->principled->sheen.value.g, 0.5f, 0.0f);
+    m = material(k, "<bsdf type=\"principledthin\"><texture name=\"diff_trans\" type=\"checkerboard\"><float "
+                    "name=\"color0\" value=\"0.4\"/><float name=\"color1\" value=\"1.4\"/></texture><texture "
+                    "name=\"eta\" type=\"checkerboard\"><float name=\"color0\" value=\"1.4\"/><float name=\"color1\" "
+                    "value=\"1.6\"/></texture></bsdf>");
+    assert_float_equal(m->principled->diff_trans.value.g, 1.4f, 1e-6f); // beyond what reflectances may be
+    assert_float_equal(m->ior, 1.5f, 1e-6f);
     assert_int_equal(told(k), 0);
 }
 
