@@ -311,20 +311,3 @@ Rgb sheen_bsdf_diffuse(const Bsdf *bsdf, Vec3 wo_l, Vec3 *n_l)
     }
     return at_most_one(sum);
 }
-
-float sheen_bsdf_roughness(const Bsdf *bsdf)
-{
-    float least = 1.0f;
-    for (uint32_t i = 0; i < bsdf->n_lobes; ++i) {
-        const BsdfLobe *lobe = &bsdf->lobes[i];
-        if (lobe->ops->class == SHEEN_BSDF_GLOSSY) least = minf(least, lobe_roughness(lobe));
-    }
-    return least;
-}
-
-void sheen_bsdf_roughen(Bsdf *bsdf, float least_alpha)
-{
-    least_alpha = clampf(least_alpha, SHEEN_ALPHA_MIN, 1.0f);
-    for (uint32_t i = 0; i < bsdf->n_lobes; ++i)
-        if (bsdf->lobes[i].ops->roughen) bsdf->lobes[i].ops->roughen(&bsdf->lobes[i], least_alpha);
-}

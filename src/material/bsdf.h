@@ -142,16 +142,6 @@ Rgb sheen_bsdf_albedo(const Bsdf *bsdf, Vec3 wo_l);
  */
 Rgb sheen_bsdf_diffuse(const Bsdf *bsdf, Vec3 wo_l, Vec3 *n_l);
 
-/** @return the least roughness alpha of the glossy lobes (of their two axes the mean); 1 without any. */
-float sheen_bsdf_roughness(const Bsdf *bsdf);
-
-/**
- * Makes glossy and mirroring lobes rougher than they are: of at least `least_alpha`, (0, 1]. Smooth metals, dielectrics
- * and coats turn into rough ones; thin panes and straight passage, which focus nothing, stay. For rays that gather
- * light and would find caustics as noise: the energy moves, hardly changes.
- */
-void sheen_bsdf_roughen(Bsdf *bsdf, float least_alpha);
-
 /**
  * @return false when nothing of a material, anywhere, is a mirror, glass, or metal, rough or not: what shows lamps that
  *         light samples do not find. Passage does not: they do.

@@ -23,8 +23,6 @@ typedef struct BsdfOps {
     Rgb (*albedo)(const BsdfLobe *b, Vec3 wo);
     /** A cheap guess of the albedo's largest channel, by which sampling chooses lobes; positive where the albedo is. */
     float (*importance)(const BsdfLobe *b, Vec3 wo);
-    /** See sheen_bsdf_roughen; NULL where there is nothing to do. */
-    void (*roughen)(BsdfLobe *b, float least_alpha);
 } BsdfOps;
 
 extern const BsdfOps sheen_lobe_lambert, sheen_lobe_coated_lambert, sheen_lobe_rough_diffuse,
@@ -61,13 +59,6 @@ static inline int bsdf_mirror_lobe(const BsdfLobe *b, Vec3 wo, BsdfSample out[2]
 static inline float bsdf_albedo_importance(const BsdfLobe *b, Vec3 wo)
 {
     return rgb_max(b->ops->albedo(b, wo));
-}
-
-/** Puts a rough kind in a smooth one's place. */
-static inline void bsdf_become_rough(BsdfLobe *b, const BsdfOps *rough, float alpha)
-{
-    b->ops = rough;
-    b->microfacet = (Microfacet){SHEEN_DISTRIBUTION_GGX, alpha, alpha};
 }
 
 /**

@@ -8,13 +8,7 @@ static Rgb conductor_albedo(const BsdfLobe *b, Vec3 wo)
     return rgb_mul(fresnel_conductor_rgb(wo.z, b->material->eta, b->material->k), b->reflectance);
 }
 
-static void conductor_roughen(BsdfLobe *b, float least_alpha)
-{
-    bsdf_become_rough(b, &sheen_lobe_rough_conductor, least_alpha);
-}
-
 const BsdfOps sheen_lobe_conductor = {.class = SHEEN_BSDF_DELTA,
                                       .lobes = bsdf_mirror_lobe,
                                       .albedo = conductor_albedo,
-                                      .importance = bsdf_albedo_importance,
-                                      .roughen = conductor_roughen};
+                                      .importance = bsdf_albedo_importance};

@@ -20,14 +20,7 @@ static Rgb dielectric_albedo(const BsdfLobe *b, Vec3 wo)
     return rgb_mad(rgb_scale(b->reflectance, f), 1.0f - f, b->transmittance);
 }
 
-static void dielectric_roughen(BsdfLobe *b, float least_alpha)
-{
-    if (fabsf(b->material->ior - 1.0f) < 1e-3f) return; // nothing to be rough
-    bsdf_become_rough(b, &sheen_lobe_rough_dielectric, least_alpha);
-}
-
 const BsdfOps sheen_lobe_dielectric = {.class = SHEEN_BSDF_DELTA,
                                        .lobes = dielectric_lobes,
                                        .albedo = dielectric_albedo,
-                                       .importance = bsdf_albedo_importance,
-                                       .roughen = dielectric_roughen};
+                                       .importance = bsdf_albedo_importance};

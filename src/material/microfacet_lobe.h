@@ -38,12 +38,6 @@ static inline float microfacet_lobe_pdf(const BsdfLobe *b, Vec3 wo, Vec3 wi)
     return sheen_microfacet_d(&b->microfacet, m) * sheen_microfacet_g1(&b->microfacet, wo, m) / (4.0f * wo.z);
 }
 
-static inline void microfacet_lobe_roughen(BsdfLobe *b, float least_alpha)
-{
-    b->microfacet.alpha_u = maxf(b->microfacet.alpha_u, least_alpha);
-    b->microfacet.alpha_v = maxf(b->microfacet.alpha_v, least_alpha);
-}
-
 /** A pair of directions at a rough interface of two media, seen from the microfacet between them. */
 typedef struct Facet {
     Vec3 m;                      // its normal, z > 0

@@ -42,19 +42,10 @@ static float phong_importance(const BsdfLobe *b, Vec3 wo)
     return wo.z > 0.0f ? rgb_max(b->reflectance) : 0.0f;
 }
 
-// Its exponent is the material's: a Beckmann lobe that is as wide takes its place.
-static void phong_roughen(BsdfLobe *b, float least_alpha)
-{
-    if (b->microfacet.alpha_u >= least_alpha) return;
-    b->microfacet = (Microfacet){SHEEN_DISTRIBUTION_BECKMANN, least_alpha, least_alpha};
-    b->ops = &sheen_lobe_ward;
-}
-
 const BsdfOps sheen_lobe_phong = {.class = SHEEN_BSDF_GLOSSY,
                                   .layer = true,
                                   .eval = phong_eval,
                                   .pdf = phong_pdf,
                                   .sample = phong_sample,
                                   .albedo = phong_albedo,
-                                  .importance = phong_importance,
-                                  .roughen = phong_roughen};
+                                  .importance = phong_importance};

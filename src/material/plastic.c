@@ -19,17 +19,11 @@ static Rgb coat_albedo(const BsdfLobe *b, Vec3 wo)
     return wo.z > 0.0f ? rgb_scale(b->reflectance, interface_reflectance(b, wo.z)) : rgb_gray(0.0f);
 }
 
-static void coat_roughen(BsdfLobe *b, float least_alpha)
-{
-    bsdf_become_rough(b, &sheen_lobe_rough_coat, least_alpha);
-}
-
 const BsdfOps sheen_lobe_coat = {.class = SHEEN_BSDF_DELTA,
                                  .layer = true,
                                  .lobes = bsdf_mirror_lobe,
                                  .albedo = coat_albedo,
-                                 .importance = bsdf_albedo_importance,
-                                 .roughen = coat_roughen};
+                                 .importance = bsdf_albedo_importance};
 
 // ---- the rough interface ----------------------------------------------------------------------------------------
 
@@ -65,8 +59,7 @@ const BsdfOps sheen_lobe_rough_coat = {.class = SHEEN_BSDF_GLOSSY,
                                        .pdf = microfacet_lobe_pdf,
                                        .sample = rough_coat_sample,
                                        .albedo = rough_coat_albedo,
-                                       .importance = rough_coat_importance,
-                                       .roughen = microfacet_lobe_roughen};
+                                       .importance = rough_coat_importance};
 
 // ---- the base ---------------------------------------------------------------------------------------------------
 // `transmittance` is what the base gains by the light that the interface sends back to it, over the index squared.

@@ -182,8 +182,7 @@ const BsdfOps sheen_lobe_principled_specular = {.class = SHEEN_BSDF_GLOSSY,
                                                 .pdf = specular_pdf,
                                                 .sample = specular_sample,
                                                 .albedo = any_albedo,
-                                                .importance = specular_importance,
-                                                .roughen = microfacet_lobe_roughen};
+                                                .importance = specular_importance};
 
 // ---- clear coat -------------------------------------------------------------------------------------------------
 // Distribution GTR1 of roughness alpha = microfacet.alpha_u < 1; masking as of GGX with alpha 0.25.
@@ -231,16 +230,10 @@ static float clearcoat_importance(const BsdfLobe *b, Vec3 wo)
     return wo.z > 0.0f ? b->principled.clearcoat * (0.04f + 0.25f * schlick_weight(wo.z)) : 0.0f;
 }
 
-static void clearcoat_roughen(BsdfLobe *b, float least_alpha)
-{
-    b->microfacet.alpha_u = maxf(b->microfacet.alpha_u, minf(least_alpha, 0.9f));
-}
-
 const BsdfOps sheen_lobe_principled_clearcoat = {.class = SHEEN_BSDF_GLOSSY,
                                                  .layer = true,
                                                  .eval = clearcoat_eval,
                                                  .pdf = clearcoat_pdf,
                                                  .sample = clearcoat_sample,
                                                  .albedo = any_albedo,
-                                                 .importance = clearcoat_importance,
-                                                 .roughen = clearcoat_roughen};
+                                                 .importance = clearcoat_importance};

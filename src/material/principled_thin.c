@@ -52,8 +52,7 @@ const BsdfOps sheen_lobe_thin_reflection = {.class = SHEEN_BSDF_GLOSSY,
                                             .pdf = microfacet_lobe_pdf,
                                             .sample = reflect_sample,
                                             .albedo = any_albedo,
-                                            .importance = reflect_importance,
-                                            .roughen = microfacet_lobe_roughen};
+                                            .importance = reflect_importance};
 
 // ---- transmission -----------------------------------------------------------------------------------------------
 
@@ -99,5 +98,4 @@ const BsdfOps sheen_lobe_thin_transmission = {.class = SHEEN_BSDF_GLOSSY,
                                               .pdf = transmit_pdf,
                                               .sample = transmit_sample,
                                               .albedo = any_albedo,
-                                              .importance = transmit_importance,
-                                              .roughen = microfacet_lobe_roughen};
+                                              .importance = transmit_importance};

@@ -39,5 +39,4 @@ const BsdfOps sheen_lobe_rough_conductor = {.class = SHEEN_BSDF_GLOSSY,
                                             .pdf = microfacet_lobe_pdf,
                                             .sample = rough_conductor_sample,
                                             .albedo = rough_conductor_albedo,
-                                            .importance = rough_conductor_importance,
-                                            .roughen = microfacet_lobe_roughen};
+                                            .importance = rough_conductor_importance};

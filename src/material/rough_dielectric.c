@@ -58,5 +58,4 @@ const BsdfOps sheen_lobe_rough_dielectric = {.class = SHEEN_BSDF_GLOSSY,
                                              .pdf = rough_dielectric_pdf,
                                              .sample = rough_dielectric_sample,
                                              .albedo = rough_dielectric_albedo,
-                                             .importance = rough_dielectric_importance,
-                                             .roughen = microfacet_lobe_roughen};
+                                             .importance = rough_dielectric_importance};

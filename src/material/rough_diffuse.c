@@ -54,6 +54,7 @@ static Rgb rough_diffuse_eval(const BsdfLobe *b, Vec3 wo, Vec3 wi)
         once = fast_fit(&p);
     else
         twice = full_fit(&p, &once);
+    once = maxf(once, 0.0f); // far beyond the roughness that the fit was made for
     Rgb c = b->reflectance;
     return rgb_scale(rgb_mad(rgb_scale(c, once), twice, rgb_mul(c, c)), wi.z * SHEEN_INV_PI);
 }

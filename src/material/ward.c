@@ -72,5 +72,4 @@ const BsdfOps sheen_lobe_ward = {.class = SHEEN_BSDF_GLOSSY,
                                  .pdf = ward_pdf,
                                  .sample = ward_sample,
                                  .albedo = ward_albedo,
-                                 .importance = ward_importance,
-                                 .roughen = microfacet_lobe_roughen};
+                                 .importance = ward_importance};
