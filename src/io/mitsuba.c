@@ -24,13 +24,23 @@ static void check_attributes(const Mitsuba *m, const SheenXml *e)
     for (const SheenXml *c = e->first; c; c = c->next) check_attributes(m, c);
 }
 
+/** Version 0.6 and those before write toWorld, 2 and 3 to_world. */
+static bool has_old_names(const SheenXml *e)
+{
+    const char *name = sheen_xml_attribute(e, "name");
+    bool found = name && (strcmp(name, "toWorld") == 0 || strcmp(name, "sampleCount") == 0);
+    for (const SheenXml *c = e->first; c && !found; c = c->next) found = has_old_names(c);
+    return found;
+}
+
 /** The number before the first dot: 0 (0.5 and 0.6), 2 or 3. A scene without one is taken for the newest. */
 static int major_version(const Mitsuba *m)
 {
     const char *version = sheen_xml_attribute(m->root, "version");
     if (version && *version >= '0' && *version <= '9') return *version - '0';
-    sheen_xml_warn(m->log, m->root, "<scene> has no version: taken for 3.0.0");
-    return 3;
+    bool old = has_old_names(m->root);
+    sheen_xml_warn(m->log, m->root, "<scene> has no version: taken for %s", old ? "0.6.0" : "3.0.0");
+    return old ? 0 : 3;
 }
 
 static void read_instance(Mitsuba *m, SheenXml *e)

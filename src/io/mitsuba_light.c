@@ -91,7 +91,7 @@ static void read_envmap(Mitsuba *m, SheenXml *e)
     SheenLight l = {.kind = SHEEN_LIGHT_ENVIRONMENT};
     l.radiance = rgb_gray((float)sheen_mi_float(m, e, "scale", 1.0));
     l.to_world = sheen_mi_transform(m, e, "to_world");
-    sheen_mi_ignore(e, "cache gamma format");
+    sheen_mi_ignore(e, "cache gamma format mis_compensation");
     if (sheen_mi_bitmap(m, e, true, 0.0, &l.environment)) sheen_builder_add_light(m->builder, &l);
 }
 

@@ -330,6 +330,7 @@ void sheen_mi_shape(Mitsuba *m, SheenXml *e, bool in_group)
                                         : sheen_mi_material(m, bsdf);
     uint32_t index = sheen_builder_add_shape(m->builder, &shape);
     if (emitter) add_area_light(m, emitter, index, in_group);
+    sheen_mi_ignore(e, "silhouette_sampling_weight");
     if (!m->status) sheen_mi_report_unused(m, e);
 }
 

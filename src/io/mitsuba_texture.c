@@ -172,7 +172,9 @@ static SheenTexture read_scale(Mitsuba *m, SheenXml *e)
     SheenXml *nested = sheen_mi_nested(m, e, "texture");
     Rgb factor = sheen_mi_color(m, e, "scale", MITSUBA_REFLECTANCE, rgb_gray(1.0f));
     SheenTexture t = sheen_texture_constant(rgb_gray(0.5f));
-    if (!nested) {
+    if (!nested && sheen_mi_child(e, "value")) {
+        t.value = sheen_mi_color(m, e, "value", MITSUBA_INDEX, t.value);
+    } else if (!nested) {
         sheen_mi_fail(m, SHEEN_ERR_PARSE, e, "the texture 'scale' holds no texture");
     } else if (nested->busy) {
         sheen_mi_fail(m, SHEEN_ERR_PARSE, e, "the texture refers to itself");
@@ -183,6 +185,27 @@ static SheenTexture read_scale(Mitsuba *m, SheenXml *e)
     }
     sheen_texture_scale(&t, factor);
     return t;
+}
+
+/** In version 3 spectra are textures without a pattern, and a wire frame is mostly what lies between its wires. */
+static bool read_constant(Mitsuba *m, SheenXml *e, SheenTexture *out)
+{
+    static const char *const spectra[] = {"uniform",   "d65",     "rgb",       "srgb",
+                                          "blackbody", "regular", "irregular", "rawconstant"};
+    for (size_t i = 0; i < sizeof spectra / sizeof *spectra; ++i)
+        if (sheen_mi_same(sheen_mi_type(e), spectra[i])) {
+            bool busy = e->busy; // the caller's mark, not a circle
+            e->busy = false;
+            *out = sheen_texture_constant(sheen_mi_color_of(m, e, MITSUBA_REFLECTANCE));
+            e->busy = busy;
+            return true;
+        }
+    if (!sheen_mi_same(sheen_mi_type(e), "wireframe")) return false;
+    *out = sheen_texture_constant(sheen_mi_color(m, e, "interior_color", MITSUBA_REFLECTANCE, rgb_gray(0.5f)));
+    if (!e->warned) sheen_xml_warn(m->log, e, "the texture 'wireframe' is not supported: its inner colour stands in");
+    e->warned = true;
+    sheen_mi_ignore(e, "edge_color line_width step_width");
+    return true;
 }
 
 static SheenTexture read_texture(Mitsuba *m, SheenXml *e)
@@ -202,6 +225,8 @@ static SheenTexture read_texture(Mitsuba *m, SheenXml *e)
         t.kind = SHEEN_TEXTURE_VERTEX_COLOR;
     } else if (sheen_mi_same(type, "scale")) {
         t = read_scale(m, e);
+    } else if (read_constant(m, e, &t)) {
+        return t;
     } else {
         SheenXml *nested = sheen_mi_nested(m, e, "texture");
         if (!e->warned)

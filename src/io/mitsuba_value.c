@@ -334,8 +334,11 @@ static Transform part_of(Mitsuba *m, const SheenXml *e)
 Transform sheen_mi_transform(Mitsuba *m, const SheenXml *e, const char *name)
 {
     Transform t = transform_identity();
-    const SheenXml *c = sheen_mi_child(e, name);
+    SheenXml *c = sheen_mi_child(e, name);
+    for (SheenXml *a = c || !sheen_mi_same(name, "to_world") ? NULL : e->first; a && !c; a = a->next)
+        if (strcmp(a->tag, "animation") == 0) c = a; // Mitsuba 3 names it as it likes
     if (c && strcmp(c->tag, "animation") == 0) {
+        c->used = true;
         sheen_xml_warn(m->log, c, "the animation is not supported: its first transform stands in");
         c = c->first;
     }

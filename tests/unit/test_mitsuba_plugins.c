@@ -306,6 +306,56 @@ static void height_fields(void **state)
                 "scene.xml:2:1", "2 to 16384 heights");
 }
 
+static void textures_that_are_constant(void **state)
+{
+    Kit *k = *state;
+    static const struct {
+        const char *texture;
+        Rgb value;
+        int n_told;
+    } cases[] = {
+        {"<texture name=\"reflectance\" type=\"uniform\"><float name=\"value\" value=\"0.25\"/></texture>",
+         {0.25f, 0.25f, 0.25f},
+         0},
+        {"<texture name=\"reflectance\" type=\"rgb\"><rgb name=\"color\" value=\"0.1 0.2 0.3\"/></texture>",
+         {0.1f, 0.2f, 0.3f},
+         0},
+        {"<texture name=\"reflectance\" type=\"scale\"><float name=\"scale\" value=\"0.5\"/><rgb name=\"value\" "
+         "value=\"0.2 0.4 0.6\"/></texture>",
+         {0.1f, 0.2f, 0.3f},
+         0},
+        {"<texture name=\"reflectance\" type=\"wireframe\"><rgb name=\"interiorColor\" value=\"0.1 0.2 0.3\"/><float "
+         "name=\"lineWidth\" value=\"1\"/></texture>",
+         {0.1f, 0.2f, 0.3f},
+         1},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        kit_assert_rgb(reflectance(k, cases[i].texture), cases[i].value, 1e-6f);
+        assert_int_equal(told(k), cases[i].n_told);
+    }
+}
+
+/** Without a version the spelling of names tells; an animation stands still. */
+static void versions_and_animations(void **state)
+{
+    Kit *k = *state;
+    kit_write(k, "scene.xml",
+              "<scene><bsdf type=\"conductor\" id=\"m\"/><shape type=\"sphere\"><transform "
+              "name=\"toWorld\"/><ref id=\"m\"/></shape></scene>");
+    assert_int_equal(kit_load(k, "scene.xml"), SHEEN_OK);
+    assert_non_null(strstr(k->warnings, "<scene> has no version: taken for 0.6.0"));
+    assert_true(k->scene->materials[k->scene->shapes[0].material].eta.r > 0.1f); // copper
+    kit_write(k, "scene.xml",
+              "<scene><bsdf type=\"conductor\" id=\"m\"/><shape type=\"sphere\"><animation "
+              "name=\"animation\"><transform time=\"0\"><translate x=\"3\"/></transform><transform "
+              "time=\"1\"/></animation><ref id=\"m\"/></shape></scene>");
+    assert_int_equal(kit_load(k, "scene.xml"), SHEEN_OK);
+    assert_non_null(strstr(k->warnings, "<scene> has no version: taken for 3.0.0"));
+    assert_true(k->scene->materials[k->scene->shapes[0].material].eta.r == 0.0f); // a mirror
+    kit_assert_v3(k->scene->shapes[0].sphere.center, v3(3, 0, 0), 0.0f);
+    assert_non_null(strstr(k->warnings, "its first transform stands in"));
+}
+
 /** In version 0.6 a shape without a material that holds a medium is not seen; in 3 it is diffuse. */
 static void borders_of_media(void **state)
 {
@@ -379,6 +429,8 @@ int main(void)
         KIT_TEST(projectors_and_pictures_of_spots),
         KIT_TEST(curves_become_tubes),
         KIT_TEST(height_fields),
+        KIT_TEST(textures_that_are_constant),
+        KIT_TEST(versions_and_animations),
         KIT_TEST(sensors_of_all_kinds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
