@@ -33,6 +33,9 @@ typedef struct ImageTarget {
     const SheenLog *log;
 } ImageTarget;
 
+/** Which channels of a picture are wanted. */
+typedef enum ImageChannels { IMAGE_RGB, IMAGE_ALPHA } ImageChannels;
+
 /**
  * A format. A decoder leaves `out` for its caller to free in failure too, so that it may stop anywhere.
  * Exactly one of `decode` and `decode_bytes` may be NULL; `encode` is NULL where the format is only read.
@@ -41,7 +44,8 @@ typedef struct ImageFormat {
     const char *endings[4]; // lower case with the dot, NULL at the end
     bool (*recognize)(const uint8_t *data, size_t size);
     SheenStatus (*decode)(const ImageSource *source, SheenImage *out);
-    SheenStatus (*decode_bytes)(const ImageSource *source, ImageBytes *out);
+    /** For alpha, spread to three channels, the pixels stay NULL where there is none. */
+    SheenStatus (*decode_bytes)(const ImageSource *source, ImageChannels channels, ImageBytes *out);
     SheenStatus (*encode)(const ImageTarget *target, ImageBuffer *out);
 } ImageFormat;
 
@@ -68,6 +72,9 @@ static inline bool buffer_append(ImageBuffer *buffer, const void *data, size_t s
 {
     return sheen_buffer_write(buffer, buffer->size, data, size);
 }
+
+/** Turns [n][4] pixels into [n][3], each channel the fourth of before, in place. */
+void sheen_image_spread_alpha(uint8_t *pixels, size_t n);
 
 /** Fails with "NAME: out of memory". */
 SheenStatus sheen_image_no_memory(const char *name, const SheenLog *log);

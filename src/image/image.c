@@ -117,7 +117,7 @@ bool sheen_buffer_write(ImageBuffer *buffer, size_t offset, const void *data, si
 static SheenStatus decode_through_bytes(const ImageFormat *format, const ImageSource *source, SheenImage *out)
 {
     ImageBytes bytes = {0};
-    SheenStatus status = format->decode_bytes(source, &bytes);
+    SheenStatus status = format->decode_bytes(source, IMAGE_RGB, &bytes);
     if (!status) status = sheen_image_alloc(source, bytes.width, bytes.height, out);
     if (!status) {
         float linear[256];
@@ -154,8 +154,16 @@ SheenStatus sheen_image_read(const char *path, const SheenLog *log, SheenImage *
     return status;
 }
 
-SheenStatus sheen_image_read_bytes(const char *path, const SheenLog *log, uint32_t *width, uint32_t *height,
-                                   uint8_t **pixels)
+void sheen_image_spread_alpha(uint8_t *pixels, size_t n)
+{
+    for (size_t i = 0; i < n; ++i) {
+        uint8_t alpha = pixels[4 * i + 3];
+        for (size_t c = 0; c < 3; ++c) pixels[3 * i + c] = alpha;
+    }
+}
+
+static SheenStatus read_channels(const char *path, ImageChannels channels, const SheenLog *log, uint32_t *width,
+                                 uint32_t *height, uint8_t **pixels)
 {
     *width = *height = 0;
     *pixels = NULL;
@@ -166,7 +174,7 @@ SheenStatus sheen_image_read_bytes(const char *path, const SheenLog *log, uint32
     ImageBytes bytes = {0};
     const ImageFormat *format = format_of_content(data, size);
     if (format && format->decode_bytes)
-        status = format->decode_bytes(&(ImageSource){data, size, path, log}, &bytes);
+        status = format->decode_bytes(&(ImageSource){data, size, path, log}, channels, &bytes);
     else
         status = sheen_fail(log, SHEEN_ERR_UNSUPPORTED, "%s: not a picture of 8 bits (PNG, JPEG, TGA, BMP)", path);
     free(data);
@@ -178,6 +186,24 @@ SheenStatus sheen_image_read_bytes(const char *path, const SheenLog *log, uint32
     *height = bytes.height;
     *pixels = bytes.pixels;
     return SHEEN_OK;
+}
+
+SheenStatus sheen_image_read_bytes(const char *path, const SheenLog *log, uint32_t *width, uint32_t *height,
+                                   uint8_t **pixels)
+{
+    return read_channels(path, IMAGE_RGB, log, width, height, pixels);
+}
+
+SheenStatus sheen_image_read_alpha(const char *path, const SheenLog *log, uint32_t *width, uint32_t *height,
+                                   uint8_t **pixels)
+{
+    SheenStatus status = read_channels(path, IMAGE_ALPHA, log, width, height, pixels);
+    size_t n = 3 * (size_t)*width * *height, opaque = 0;
+    while (!status && *pixels && opaque < n && (*pixels)[opaque] == 255) ++opaque;
+    if (opaque < n) return status;
+    free(*pixels);
+    *pixels = NULL;
+    return status;
 }
 
 SheenStatus sheen_image_encode(const char *name, const SheenImageView *view, float exposure, const SheenLog *log,

@@ -85,6 +85,13 @@ SHEEN_NODISCARD SheenStatus sheen_image_decode(const void *data, size_t size, co
 SHEEN_NODISCARD SheenStatus sheen_image_read_bytes(const char *path, const SheenLog *log, uint32_t *width,
                                                    uint32_t *height, uint8_t **pixels);
 
+/**
+ * The same for the alpha channel of such a picture, spread to three channels.
+ * @param pixels  NULL where it has none, or one that is opaque everywhere
+ */
+SHEEN_NODISCARD SheenStatus sheen_image_read_alpha(const char *path, const SheenLog *log, uint32_t *width,
+                                                   uint32_t *height, uint8_t **pixels);
+
 /** @return true when the file's ending is of an 8-bit format. */
 bool sheen_image_is_8bit(const char *path);
 

@@ -79,8 +79,9 @@ static void decode(JpegJob *job)
     jpeg_finish_decompress(jpeg);
 }
 
-static SheenStatus jpeg_decode_bytes(const ImageSource *source, ImageBytes *out)
+static SheenStatus jpeg_decode_bytes(const ImageSource *source, ImageChannels channels, ImageBytes *out)
 {
+    if (channels == IMAGE_ALPHA) return SHEEN_OK; // it has none
     JpegJob job = {.source = source, .out = out};
     job.jpeg.err = jpeg_std_error(&job.errors);
     job.errors.error_exit = on_error;

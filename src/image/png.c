@@ -14,10 +14,12 @@ typedef struct PngJob {
     const ImageSource *source;
     size_t at; // next byte of the source
     ImageBuffer *target;
-    uint8_t *pixels; // [height][width][3], 8 or 16 bits each
+    uint8_t *pixels; // [height][width][n_channels], 8 or 16 bits each
     png_bytep *rows;
     uint32_t width, height;
-    int depth; // bits of a sample as delivered, 8 or 16
+    int depth;  // bits of a sample as delivered, 8 or 16
+    bool alpha; // keep it; n_channels is then 4 where there is one
+    size_t n_channels;
     SheenStatus status;
     char message[128];
 } PngJob;
@@ -51,7 +53,7 @@ static void read_source(png_structp png, png_bytep out, size_t size)
     job->at += size;
 }
 
-/** Reads the header and asks libpng for RGB without alpha. */
+/** Reads the header and asks libpng for RGB, with alpha where that is wanted and there is one. */
 static void read_header(PngJob *job)
 {
     png_structp png = job->png;
@@ -64,18 +66,19 @@ static void read_header(PngJob *job)
     if (job->status) png_longjmp(png, 1);
     png_set_expand(png); // palette to RGB, 1, 2 and 4 bits to 8
     png_set_gray_to_rgb(png);
-    png_set_strip_alpha(png);
+    if (!job->alpha) png_set_strip_alpha(png);
     png_set_interlace_handling(png);
     if (job->depth == 8) png_set_scale_16(png);
     png_read_update_info(png, job->info);
     job->depth = png_get_bit_depth(png, job->info);
-    if (png_get_channels(png, job->info) != 3 || (job->depth != 8 && job->depth != 16))
-        png_error(png, "this kind of pixel is not known");
+    job->n_channels = png_get_channels(png, job->info);
+    bool known = job->n_channels == 3 || (job->n_channels == 4 && job->alpha);
+    if (!known || (job->depth != 8 && job->depth != 16)) png_error(png, "this kind of pixel is not known");
 }
 
 static void read_pixels(PngJob *job)
 {
-    size_t row_size = (size_t)job->width * 3 * (size_t)job->depth / 8;
+    size_t row_size = (size_t)job->width * job->n_channels * (size_t)job->depth / 8;
     job->pixels = calloc(job->height, row_size);
     job->rows = malloc(job->height * sizeof *job->rows);
     if (!job->pixels || !job->rows) {
@@ -98,9 +101,9 @@ static void run(PngJob *job, void (*work)(PngJob *))
 }
 
 /** Decodes to job->pixels, which the caller frees. @param depth  8, or 16 for the depth that the file has */
-static SheenStatus decode_to_depth(const ImageSource *source, int depth, PngJob *job)
+static SheenStatus decode_to_depth(const ImageSource *source, int depth, bool alpha, PngJob *job)
 {
-    *job = (PngJob){.source = source, .depth = depth};
+    *job = (PngJob){.source = source, .depth = depth, .alpha = alpha};
     job->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, job, on_error, on_warning);
     if (job->png) job->info = png_create_info_struct(job->png);
     if (!job->png || !job->info) {
@@ -115,18 +118,25 @@ static SheenStatus decode_to_depth(const ImageSource *source, int depth, PngJob 
     return job->status;
 }
 
-static SheenStatus png_decode_bytes(const ImageSource *source, ImageBytes *out)
+static SheenStatus png_decode_bytes(const ImageSource *source, ImageChannels channels, ImageBytes *out)
 {
     PngJob job;
-    SheenStatus status = decode_to_depth(source, 8, &job);
+    SheenStatus status = decode_to_depth(source, 8, channels == IMAGE_ALPHA, &job);
     *out = (ImageBytes){job.width, job.height, job.pixels};
-    return status;
+    if (status || channels == IMAGE_RGB) return status;
+    if (job.n_channels == 4) {
+        sheen_image_spread_alpha(job.pixels, (size_t)job.width * job.height);
+    } else {
+        free(job.pixels);
+        out->pixels = NULL;
+    }
+    return SHEEN_OK;
 }
 
 static SheenStatus png_decode(const ImageSource *source, SheenImage *out)
 {
     PngJob job;
-    SheenStatus status = decode_to_depth(source, 16, &job);
+    SheenStatus status = decode_to_depth(source, 16, false, &job);
     if (!status) status = sheen_image_alloc(source, job.width, job.height, out);
     float largest = job.depth == 16 ? 65535.0f : 255.0f;
     float *linear = malloc(65536 * sizeof *linear);

@@ -68,7 +68,7 @@ static int feed_eof(void *user)
 
 static const stbi_io_callbacks feed_callbacks = {feed_read, feed_skip, feed_eof};
 
-static SheenStatus stb_decode_bytes(const ImageSource *source, ImageBytes *out)
+static SheenStatus stb_decode_bytes(const ImageSource *source, ImageChannels wanted, ImageBytes *out)
 {
     int width = 0, height = 0, channels;
     Feed feed = {.source = source};
@@ -79,9 +79,12 @@ static SheenStatus stb_decode_bytes(const ImageSource *source, ImageBytes *out)
     // A run of 128 pixels takes two bytes at least, and stb fills what is missing, patiently, with black.
     if ((uint64_t)width * (uint64_t)height / 64 > source->size)
         return sheen_fail(source->log, SHEEN_ERR_PARSE, "%s: the file ends before the picture does", source->name);
+    bool alpha = wanted == IMAGE_ALPHA;
+    if (alpha && channels != 2 && channels != 4) return SHEEN_OK;
     feed = (Feed){.source = source};
-    uint8_t *pixels = stbi_load_from_callbacks(&feed_callbacks, &feed, &width, &height, &channels, 3);
+    uint8_t *pixels = stbi_load_from_callbacks(&feed_callbacks, &feed, &width, &height, &channels, alpha ? 4 : 3);
     if (pixels && !feed.starved) {
+        if (alpha) sheen_image_spread_alpha(pixels, (size_t)width * (size_t)height);
         *out = (ImageBytes){(uint32_t)width, (uint32_t)height, pixels}; // stb's allocator is malloc
         return SHEEN_OK;
     }

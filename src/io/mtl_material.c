@@ -28,11 +28,14 @@ static const char *find_picture(const MtlReader *r, const MtlMaterial *m, const 
 }
 
 /** Bytes stay bytes when the factor is the same for all channels: it goes into the table. */
-static SheenStatus read_bytes(const MtlReader *r, const char *path, Rgb factor, bool raw, SheenBitmap *out)
+static SheenStatus read_bytes(const MtlReader *r, const char *path, Rgb factor, MtlUse use, SheenBitmap *out)
 {
-    uint8_t *pixels;
-    SheenStatus s = sheen_image_read_bytes(path, r->log, &out->width, &out->height, &pixels);
-    if (s) return s;
+    uint8_t *pixels = NULL;
+    SheenStatus s = SHEEN_OK;
+    if (use == MTL_ALPHA || use == MTL_OPACITY)
+        s = sheen_image_read_alpha(path, r->log, &out->width, &out->height, &pixels);
+    if (!s && !pixels && use != MTL_ALPHA) s = sheen_image_read_bytes(path, r->log, &out->width, &out->height, &pixels);
+    if (s || !pixels) return s;
     size_t size = 3 * (size_t)out->width * out->height;
     uint8_t *copy = sheen_arena_alloc(r->arena, size, 1);
     float *table = SHEEN_ARENA_NEW(r->arena, float, 256);
@@ -41,7 +44,7 @@ static SheenStatus read_bytes(const MtlReader *r, const char *path, Rgb factor, 
     if (!copy || !table) return SHEEN_ERR_NOMEM;
     for (int i = 0; i < 256; ++i) {
         float x = (float)i / 255.0f;
-        table[i] = factor.r * (raw ? x : sheen_srgb_decode(x));
+        table[i] = factor.r * (use == MTL_COLOR ? sheen_srgb_decode(x) : x);
     }
     out->bytes = copy;
     out->decode = table;
@@ -61,9 +64,16 @@ static SheenStatus read_floats(const MtlReader *r, const char *path, Rgb factor,
     return copy ? SHEEN_OK : SHEEN_ERR_NOMEM;
 }
 
-/** Reads a picture, once for all materials that show it alike. `out` is NULL when there is none to be read.
- *  @param raw  numbers, not colours: bytes are linear */
-static SheenStatus read_picture(MtlReader *r, const MtlMaterial *m, const char *file, Rgb factor, bool raw,
+/** Formats of floats have no alpha that is read. */
+static SheenStatus read_bitmap(const MtlReader *r, const char *path, Rgb factor, MtlUse use, SheenBitmap *out)
+{
+    if (sheen_image_is_8bit(path) && factor.r == factor.g && factor.g == factor.b)
+        return read_bytes(r, path, factor, use, out);
+    return use == MTL_ALPHA ? SHEEN_OK : read_floats(r, path, factor, out);
+}
+
+/** Reads a picture, once for all materials that use it alike. `out` is NULL when there is nothing to be read. */
+static SheenStatus read_picture(MtlReader *r, const MtlMaterial *m, const char *file, Rgb factor, MtlUse use,
                                 const SheenBitmap **out)
 {
     *out = NULL;
@@ -73,30 +83,29 @@ static SheenStatus read_picture(MtlReader *r, const MtlMaterial *m, const char *
         return SHEEN_OK;
     }
     for (const MtlPicture *p = r->pictures; p; p = p->next)
-        if (strcmp(p->path, path) == 0 && p->raw == raw && memcmp(&p->factor, &factor, sizeof factor) == 0) {
-            *out = &p->bitmap;
+        if (strcmp(p->path, path) == 0 && p->use == use && memcmp(&p->factor, &factor, sizeof factor) == 0) {
+            if (p->bitmap.bytes || p->bitmap.floats) *out = &p->bitmap;
             return SHEEN_OK;
         }
     MtlPicture *p = SHEEN_ARENA_NEW(r->scratch, MtlPicture, 1);
     if (!p) return no_memory(r);
-    *p = (MtlPicture){.path = path, .factor = factor, .raw = raw, .next = r->pictures};
-    bool bytes = sheen_image_is_8bit(path) && factor.r == factor.g && factor.g == factor.b;
-    SheenStatus s = bytes ? read_bytes(r, path, factor, raw, &p->bitmap) : read_floats(r, path, factor, &p->bitmap);
+    *p = (MtlPicture){.path = path, .factor = factor, .use = use, .next = r->pictures};
+    SheenStatus s = read_bitmap(r, path, factor, use, &p->bitmap);
     if (s == SHEEN_ERR_NOMEM) return no_memory(r);
     if (s) return s; // the reader has reported the file
     r->pictures = p;
-    *out = &p->bitmap;
+    if (p->bitmap.bytes || p->bitmap.floats) *out = &p->bitmap;
     return SHEEN_OK;
 }
 
 /** A picture times a factor, the factor alone where there is none. */
-static SheenStatus read_texture(MtlReader *r, const MtlMaterial *m, const MtlMap *map, Rgb factor, bool raw,
+static SheenStatus read_texture(MtlReader *r, const MtlMaterial *m, const MtlMap *map, Rgb factor, MtlUse use,
                                 SheenTexture *out)
 {
     *out = sheen_texture_constant(factor);
     if (!map->file) return SHEEN_OK;
     const SheenBitmap *bitmap;
-    SheenStatus s = read_picture(r, m, map->file, factor, raw, &bitmap);
+    SheenStatus s = read_picture(r, m, map->file, factor, use, &bitmap);
     if (s || !bitmap) return s;
     out->kind = SHEEN_TEXTURE_BITMAP;
     out->bitmap = *bitmap;
@@ -118,11 +127,11 @@ static SheenStatus read_diffuse(MtlReader *r, const MtlMaterial *m, float scale,
 {
     Rgb color = clamp_color(m->diffuse);
     if (m->diffuse_map.file && rgb_is_black(color)) {
-        SheenStatus s = read_texture(r, m, &m->diffuse_map, rgb_gray(scale), false, out);
+        SheenStatus s = read_texture(r, m, &m->diffuse_map, rgb_gray(scale), MTL_COLOR, out);
         if (out->kind == SHEEN_TEXTURE_CONSTANT) out->value = color;
         return s;
     }
-    return read_texture(r, m, &m->diffuse_map, rgb_scale(color, scale), false, out);
+    return read_texture(r, m, &m->diffuse_map, rgb_scale(color, scale), MTL_COLOR, out);
 }
 
 /**
@@ -170,7 +179,7 @@ static void make_mirror(const MtlMaterial *m, SheenMaterial *out)
 /** A number in [0, 1], or the picture in its place. */
 static SheenStatus read_number(MtlReader *r, const MtlMaterial *m, const MtlMap *map, float value, SheenTexture *out)
 {
-    SheenStatus s = read_texture(r, m, map, rgb_gray(1.0f), true, out);
+    SheenStatus s = read_texture(r, m, map, rgb_gray(1.0f), MTL_NUMBERS, out);
     if (out->kind == SHEEN_TEXTURE_CONSTANT) out->value = rgb_gray(clampf(value, 0.0f, 1.0f));
     return s;
 }
@@ -235,11 +244,16 @@ static SheenStatus make_opaque(MtlReader *r, const MtlMaterial *m, SheenMaterial
     return read_diffuse(r, m, 1.0f, &out->reflectance);
 }
 
-/** A map_d that is the colours' picture means its alpha, which is not read. */
 static bool is_cut_out(const MtlMaterial *m)
 {
-    bool map = m->opacity_map.file && !(m->diffuse_map.file && strcmp(m->opacity_map.file, m->diffuse_map.file) == 0);
-    return (m->opacity < 1.0f || map) && !is_glass(m);
+    return (m->opacity < 1.0f || m->opacity_map.file) && !is_glass(m);
+}
+
+/** A map_d that is the colours' picture means its alpha alone. */
+static MtlUse use_of_opacity(const MtlMaterial *m)
+{
+    const char *opacity = m->opacity_map.file, *colors = m->diffuse_map.file;
+    return opacity && colors && strcmp(opacity, colors) == 0 ? MTL_ALPHA : MTL_OPACITY;
 }
 
 /** Puts the material *index under its opacity. */
@@ -248,8 +262,9 @@ static SheenStatus add_mask(MtlReader *r, const MtlMaterial *m, SheenMaterial *m
     if (*index == SHEEN_NONE) return SHEEN_OK; // the builder remembers the failure
     mask->kind = SHEEN_MATERIAL_MASK;
     mask->nested[0] = *index;
-    SheenStatus s = read_texture(r, m, &m->opacity_map, rgb_gray(m->opacity), true, &mask->weight);
-    if (!s) *index = sheen_builder_add_material(r->builder, mask);
+    SheenStatus s = read_texture(r, m, &m->opacity_map, rgb_gray(m->opacity), use_of_opacity(m), &mask->weight);
+    bool opaque = mask->weight.kind == SHEEN_TEXTURE_CONSTANT && m->opacity >= 1.0f;
+    if (!s && !opaque) *index = sheen_builder_add_material(r->builder, mask);
     return s;
 }
 
@@ -259,7 +274,7 @@ static SheenStatus add_normals(MtlReader *r, const MtlMaterial *m, SheenMaterial
     normals->kind = SHEEN_MATERIAL_NORMAL;
     normals->nested[0] = *index;
     normals->turn_normals = normals->shadow_normals = true;
-    SheenStatus s = read_texture(r, m, &m->normal_map, rgb_gray(1.0f), true, &normals->map);
+    SheenStatus s = read_texture(r, m, &m->normal_map, rgb_gray(1.0f), MTL_NUMBERS, &normals->map);
     if (s || normals->map.kind == SHEEN_TEXTURE_CONSTANT || *index == SHEEN_NONE) return s;
     *index = sheen_builder_add_material(r->builder, normals);
     return SHEEN_OK;

@@ -6,12 +6,20 @@
 #include "io/mtl.h"
 #include "scene/builder.h"
 
+/** What is taken from a picture. */
+typedef enum MtlUse {
+    MTL_COLOR,
+    MTL_NUMBERS, // bytes are linear
+    MTL_ALPHA,   // its alpha channel, which a picture may lack
+    MTL_OPACITY, // that, else its numbers
+} MtlUse;
+
 /** A picture that is in memory already. */
 typedef struct MtlPicture {
     const char *path;
     Rgb factor; // its values are multiplied by this
-    bool raw;   // bytes are linear
-    SheenBitmap bitmap;
+    MtlUse use;
+    SheenBitmap bitmap; // without pixels where there is no alpha
     struct MtlPicture *next;
 } MtlPicture;
 

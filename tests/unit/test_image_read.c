@@ -197,6 +197,21 @@ static void test_read_bytes(void **state)
     assert_null(pixels);
 }
 
+// Alpha as other programs wrote it: 77 everywhere, and eighths across; none where there is none.
+static void test_read_alpha(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"rgba8.png", "grayalpha8.png", "rgb8.png", "rgb.jpg", "rgb.tga", "rgb.bmp"};
+    for (int i = 0; i < 6; ++i) {
+        uint32_t width, height;
+        uint8_t *pixels;
+        assert_int_equal(sheen_image_read_alpha(path_of(names[i]), NULL, &width, &height, &pixels), SHEEN_OK);
+        assert_int_equal(pixels != NULL, i < 2);
+        for (uint32_t k = 0; pixels && k < 3 * 48; ++k) assert_int_equal(pixels[k], i == 0 ? 77 : 32 * (k / 3 % 8));
+        free(pixels);
+    }
+}
+
 static void expect_failure(const void *data, size_t size, SheenStatus want, const char *reason)
 {
     Lines lines = {0};
@@ -320,8 +335,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_linear_pictures),  cmocka_unit_test(test_byte_pictures),
         cmocka_unit_test(test_compressed_steps), cmocka_unit_test(test_read_bytes),
-        cmocka_unit_test(test_refused_kinds),    cmocka_unit_test(test_claimed_sizes),
-        cmocka_unit_test(test_cut_files),        cmocka_unit_test(test_missing_files),
+        cmocka_unit_test(test_read_alpha),       cmocka_unit_test(test_refused_kinds),
+        cmocka_unit_test(test_claimed_sizes),    cmocka_unit_test(test_cut_files),
+        cmocka_unit_test(test_missing_files),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

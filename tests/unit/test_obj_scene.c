@@ -197,7 +197,40 @@ static void what_is_partly_transparent_is_a_mask(void **state)
     kit_assert_rgb(k->scene->materials[m->nested[0]].reflectance.value, rgb(0.1f, 0.2f, 0.3f), 1e-6f);
     m = material(k, "d 0.5\nmap_d half.png"); // bytes are the share, not a colour: 188 / 255
     kit_assert_rgb(sheen_texture_eval(&m->weight, v2(0, 0)), rgb_gray(0.5f * 188.0f / 255.0f), 1e-5f);
-    m = material(k, "map_Kd half.png\nmap_d half.png"); // its alpha, which is not read
+    m = material(k, "map_Kd half.png\nmap_d half.png"); // its alpha, which it has not
+    assert_int_equal(m->kind, SHEEN_MATERIAL_DIFFUSE);
+}
+
+/** A TGA file of 2 x 1 pixels, blue, green, red, alpha, from top left. */
+static void write_tga(Kit *k, const char *name, uint8_t left_alpha, uint8_t right_alpha)
+{
+    const uint8_t bytes[18 + 8] = {0, 0, 2, 0,  0,    0,  0,   0,  0,          0,  0,   0,  2,
+                                   0, 1, 0, 32, 0x28, 10, 100, 51, left_alpha, 10, 100, 51, right_alpha};
+    kit_write_bytes(k, name, bytes, sizeof bytes);
+}
+
+static void alpha_channels_are_opacities(void **state)
+{
+    Kit *k = *state;
+    write_tga(k, "leaf.tga", 0, 204);
+    const char *const both[] = {"Kd 1 1 1\nmap_Kd leaf.tga\nmap_d leaf.tga", "map_d leaf.tga"};
+    for (int i = 0; i < 2; ++i) {
+        const SheenMaterial *m = material(k, both[i]);
+        assert_int_equal(m->kind, SHEEN_MATERIAL_MASK);
+        assert_true(rgb_is_black(sheen_texture_eval(&m->weight, v2(0.25f, 0.5f))));
+        kit_assert_rgb(sheen_texture_eval(&m->weight, v2(0.75f, 0.5f)), rgb_gray(0.8f), 1e-6f);
+        kit_assert_rgb(sheen_texture_eval(&m->weight, v2(0.5f, 0.5f)), rgb_gray(0.4f), 1e-6f); // bilinear
+        if (i == 0) // the colours are read beside
+            kit_assert_rgb(
+                sheen_texture_eval(&k->scene->materials[m->nested[0]].reflectance, v2(0.25f, 0.5f)),
+                rgb(sheen_srgb_decode(0.2f), sheen_srgb_decode(100.0f / 255.0f), sheen_srgb_decode(10.0f / 255.0f)),
+                1e-5f);
+    }
+    write_tga(k, "leaf.tga", 255, 255); // opaque everywhere: then the numbers count
+    const SheenMaterial *m = material(k, "map_d leaf.tga");
+    assert_float_equal(rgb_luminance(sheen_texture_eval(&m->weight, v2(0.25f, 0.5f))),
+                       rgb_luminance(rgb(0.2f, 100.0f / 255.0f, 10.0f / 255.0f)), 1e-6f);
+    m = material(k, "map_Kd leaf.tga\nmap_d leaf.tga");
     assert_int_equal(m->kind, SHEEN_MATERIAL_DIFFUSE);
 }
 
@@ -330,6 +363,7 @@ int main(void)
         KIT_TEST(maps_of_normals),
         KIT_TEST(what_is_partly_transparent_is_a_mask),
         KIT_TEST(pictures_of_roughness_and_metal),
+        KIT_TEST(alpha_channels_are_opacities),
         KIT_TEST(pictures_are_multiplied_by_the_colour),
         KIT_TEST(libraries_are_looked_for),
         KIT_TEST(normals_follow_the_smoothing_groups),
