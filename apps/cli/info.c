@@ -217,7 +217,8 @@ static int print_info(json_t *info, bool as_json)
 
 static bool is_image(const char *path)
 {
-    static const char *const endings[] = {".exr", ".hdr", ".pfm", ".png", ".jpg", ".jpeg", ".tga", ".bmp"};
+    static const char *const endings[] = {".exr",  ".hdr", ".pfm", ".png", ".jpg",
+                                          ".jpeg", ".tga", ".bmp", ".ppm", ".pgm"};
     const char *dot = strrchr(path, '.');
     for (size_t i = 0; dot && i < sizeof endings / sizeof *endings; ++i)
         if (strcasecmp(dot, endings[i]) == 0) return true;

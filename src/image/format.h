@@ -50,7 +50,7 @@ typedef struct ImageFormat {
 } ImageFormat;
 
 extern const ImageFormat sheen_format_exr, sheen_format_hdr, sheen_format_pfm, sheen_format_png, sheen_format_jpeg,
-    sheen_format_bmp, sheen_format_tga;
+    sheen_format_bmp, sheen_format_tga, sheen_format_pnm;
 
 /**
  * Checks a size that a file claims against the limits of image.h and against the length of the file, so that some bytes

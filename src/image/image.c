@@ -11,7 +11,7 @@
 // TGA stands last: it has no magic number, so that its test is the weakest.
 static const ImageFormat *const formats[] = {
     &sheen_format_exr,  &sheen_format_hdr, &sheen_format_pfm, &sheen_format_png,
-    &sheen_format_jpeg, &sheen_format_bmp, &sheen_format_tga,
+    &sheen_format_jpeg, &sheen_format_bmp, &sheen_format_pnm, &sheen_format_tga,
 };
 enum { n_formats = sizeof formats / sizeof formats[0] };
 

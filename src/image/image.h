@@ -66,8 +66,8 @@ bool sheen_image_writable_format(const char *path);
 bool sheen_image_readable_format(const char *path);
 
 /**
- * Reads .exr, .hdr, .pfm (linear) or .png, .jpg, .tga, .bmp (8-bit, decoded from sRGB to linear); gray is spread to
- * three channels, alpha is dropped. Of an EXR, the layer without a name.
+ * Reads .exr, .hdr, .pfm (linear) or .png, .jpg, .tga, .bmp, .ppm, .pgm (8-bit, decoded from sRGB to linear); gray is
+ * spread to three channels, alpha is dropped. Of an EXR, the layer without a name.
  * @param out  zero on failure; free with sheen_image_free
  * Errors: SHEEN_ERR_IO, SHEEN_ERR_PARSE, SHEEN_ERR_UNSUPPORTED, SHEEN_ERR_NOMEM, each with one line that names the
  * file.

@@ -96,6 +96,39 @@ static void read_uv_map(Mitsuba *m, const SheenXml *e, SheenTexture *out)
     }
 }
 
+static SheenWrap wrap_of(Mitsuba *m, const SheenXml *e, const char *name)
+{
+    if (sheen_mi_same(name, "mirror")) return SHEEN_WRAP_MIRROR;
+    if (sheen_mi_same(name, "clamp")) return SHEEN_WRAP_CLAMP;
+    if (!sheen_mi_same(name, "repeat") && !e->warned)
+        sheen_xml_warn(m->log, e, "the wrap mode '%s' is not supported: 'repeat' stands in", name);
+    return SHEEN_WRAP_REPEAT;
+}
+
+/** Makes a picture one of its channels, gray, as version 0.6 may ask. @return false when out of memory */
+static bool take_channel(Mitsuba *m, const SheenXml *e, const char *name, SheenBitmap *b)
+{
+    static const char *const names[] = {"r", "g", "b"};
+    int c = 0;
+    while (c < 3 && !sheen_mi_same(name, names[c])) ++c;
+    if (c == 3) {
+        sheen_xml_warn(m->log, e, "the channel '%s' of a picture is not supported: its colours stand in", name);
+        return true;
+    }
+    size_t n = (size_t)b->width * b->height;
+    uint8_t *bytes = b->bytes ? sheen_arena_alloc(m->arena, n, 3) : NULL;
+    Rgb *floats = b->floats ? SHEEN_ARENA_NEW(m->arena, Rgb, n) : NULL;
+    if (!bytes && !floats) {
+        sheen_mi_fail(m, SHEEN_ERR_NOMEM, e, "out of memory");
+        return false;
+    }
+    for (size_t i = 0; bytes && i < n; ++i) memset(bytes + 3 * i, b->bytes[3 * i + (size_t)c], 3);
+    for (size_t i = 0; floats && i < n; ++i)
+        floats[i] = rgb_gray(c == 0 ? b->floats[i].r : c == 1 ? b->floats[i].g : b->floats[i].b);
+    b->bytes = bytes, b->floats = floats;
+    return true;
+}
+
 static SheenTexture read_bitmap(Mitsuba *m, const SheenXml *e)
 {
     SheenTexture t = sheen_texture_constant(rgb_gray(0.5f));
@@ -104,22 +137,16 @@ static SheenTexture read_bitmap(Mitsuba *m, const SheenXml *e)
     if (sheen_mi_bool(m, e, "raw", false)) gamma = 1.0;
     if (!sheen_mi_bitmap(m, e, false, gamma > 0.0 ? gamma : 0.0, &t.bitmap)) return t;
     t.kind = SHEEN_TEXTURE_BITMAP;
+    const char *channel = sheen_mi_string(m, e, "channel", NULL);
+    if (channel && !take_channel(m, e, channel, &t.bitmap)) return t;
     const char *filter = sheen_mi_string(m, e, "filter_type", "bilinear");
     t.nearest = sheen_mi_same(filter, "nearest");
     // Version 0.6 may give a mode for each coordinate.
     const char *wrap = sheen_mi_string(m, e, "wrap_mode", "repeat");
-    wrap = sheen_mi_string(m, e, "wrap_mode_u", wrap);
-    const char *wrap_v = sheen_mi_string(m, e, "wrap_mode_v", wrap);
-    if (!sheen_mi_same(wrap, wrap_v))
-        sheen_xml_warn(m->log, e, "the wrap modes of u and v differ: that of u, '%s', stands in for both", wrap);
-    if (sheen_mi_same(wrap, "mirror"))
-        t.wrap = SHEEN_WRAP_MIRROR;
-    else if (sheen_mi_same(wrap, "clamp"))
-        t.wrap = SHEEN_WRAP_CLAMP;
-    else if (!sheen_mi_same(wrap, "repeat"))
-        sheen_xml_warn(m->log, e, "the wrap mode '%s' is not supported: 'repeat' stands in", wrap);
+    t.wrap_u = wrap_of(m, e, sheen_mi_string(m, e, "wrap_mode_u", wrap));
+    t.wrap_v = wrap_of(m, e, sheen_mi_string(m, e, "wrap_mode_v", wrap));
     read_uv_map(m, e, &t);
-    sheen_mi_ignore(e, "max_anisotropy cache channel format accel"); // how Mitsuba filters and stores
+    sheen_mi_ignore(e, "max_anisotropy cache format accel"); // how Mitsuba filters and stores
     return t;
 }
 

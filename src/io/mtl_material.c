@@ -109,7 +109,7 @@ static SheenStatus read_texture(MtlReader *r, const MtlMaterial *m, const MtlMap
     if (s || !bitmap) return s;
     out->kind = SHEEN_TEXTURE_BITMAP;
     out->bitmap = *bitmap;
-    out->wrap = map->clamp ? SHEEN_WRAP_CLAMP : SHEEN_WRAP_REPEAT;
+    out->wrap_u = out->wrap_v = map->clamp ? SHEEN_WRAP_CLAMP : SHEEN_WRAP_REPEAT;
     const float uv[2][3] = {{map->scale.x, 0.0f, map->offset.x}, {0.0f, map->scale.y, map->offset.y}};
     memcpy(out->uv, uv, sizeof uv);
     return SHEEN_OK;

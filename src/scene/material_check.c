@@ -75,9 +75,9 @@ static bool same_texture(const SheenTexture *a, const SheenTexture *b)
     if (!same || a->kind == SHEEN_TEXTURE_CONSTANT) return same;
     for (int i = 0; i < 6; ++i) same = same && a->uv[i / 3][i % 3] == b->uv[i / 3][i % 3];
     return same && a->value2.g == b->value2.g && a->bitmap.bytes == b->bitmap.bytes &&
-           a->bitmap.floats == b->bitmap.floats && a->wrap == b->wrap && a->nearest == b->nearest &&
-           a->line_width == b->line_width && a->scale.r == b->scale.r && a->scale.g == b->scale.g &&
-           a->scale.b == b->scale.b;
+           a->bitmap.floats == b->bitmap.floats && a->wrap_u == b->wrap_u && a->wrap_v == b->wrap_v &&
+           a->nearest == b->nearest && a->line_width == b->line_width && a->scale.r == b->scale.r &&
+           a->scale.g == b->scale.g && a->scale.b == b->scale.b;
 }
 
 static bool is_zero(const SheenTexture *t)

@@ -53,17 +53,17 @@ static Rgb eval_bitmap(const SheenTexture *t, float u, float v)
 {
     const SheenBitmap *b = &t->bitmap;
     // Rows run downward, v upward.
-    float x = fold(u, t->wrap) * (float)b->width;
-    float y = (1.0f - fold(v, t->wrap)) * (float)b->height;
+    float x = fold(u, t->wrap_u) * (float)b->width;
+    float y = (1.0f - fold(v, t->wrap_v)) * (float)b->height;
     if (t->nearest) {
         // v on a texel border belongs to the texel above it, hence the ceiling.
-        return texel(b, wrap_index((int64_t)floorf(x), b->width, t->wrap),
-                     wrap_index((int64_t)ceilf(y) - 1, b->height, t->wrap));
+        return texel(b, wrap_index((int64_t)floorf(x), b->width, t->wrap_u),
+                     wrap_index((int64_t)ceilf(y) - 1, b->height, t->wrap_v));
     }
     x -= 0.5f, y -= 0.5f;
     float fx = floorf(x), fy = floorf(y), ax = x - fx, ay = y - fy;
-    uint32_t x0 = wrap_index((int64_t)fx, b->width, t->wrap), x1 = wrap_index((int64_t)fx + 1, b->width, t->wrap);
-    uint32_t y0 = wrap_index((int64_t)fy, b->height, t->wrap), y1 = wrap_index((int64_t)fy + 1, b->height, t->wrap);
+    uint32_t x0 = wrap_index((int64_t)fx, b->width, t->wrap_u), x1 = wrap_index((int64_t)fx + 1, b->width, t->wrap_u);
+    uint32_t y0 = wrap_index((int64_t)fy, b->height, t->wrap_v), y1 = wrap_index((int64_t)fy + 1, b->height, t->wrap_v);
     Rgb sum = rgb_scale(texel(b, x0, y0), (1.0f - ax) * (1.0f - ay));
     sum = rgb_mad(sum, ax * (1.0f - ay), texel(b, x1, y0));
     sum = rgb_mad(sum, (1.0f - ax) * ay, texel(b, x0, y1));
@@ -95,18 +95,17 @@ Vec2 sheen_texture_gradient(const SheenTexture *t, Vec2 uv)
     if (t->kind != SHEEN_TEXTURE_BITMAP || t->nearest) return v2(0.0f, 0.0f);
     float u = t->uv[0][0] * uv.x + t->uv[0][1] * uv.y + t->uv[0][2];
     float v = t->uv[1][0] * uv.x + t->uv[1][1] * uv.y + t->uv[1][2];
-    float x = fold(u, t->wrap) * (float)b->width - 0.5f, y = (1.0f - fold(v, t->wrap)) * (float)b->height - 0.5f;
+    float x = fold(u, t->wrap_u) * (float)b->width - 0.5f, y = (1.0f - fold(v, t->wrap_v)) * (float)b->height - 0.5f;
     float fx = floorf(x), fy = floorf(y), ax = x - fx, ay = y - fy;
-    uint32_t x0 = wrap_index((int64_t)fx, b->width, t->wrap), x1 = wrap_index((int64_t)fx + 1, b->width, t->wrap);
-    uint32_t y0 = wrap_index((int64_t)fy, b->height, t->wrap), y1 = wrap_index((int64_t)fy + 1, b->height, t->wrap);
+    uint32_t x0 = wrap_index((int64_t)fx, b->width, t->wrap_u), x1 = wrap_index((int64_t)fx + 1, b->width, t->wrap_u);
+    uint32_t y0 = wrap_index((int64_t)fy, b->height, t->wrap_v), y1 = wrap_index((int64_t)fy + 1, b->height, t->wrap_v);
     Rgb k = t->scale;
     float a = rgb_luminance(rgb_mul(k, texel(b, x0, y0))), c = rgb_luminance(rgb_mul(k, texel(b, x1, y0)));
     float d = rgb_luminance(rgb_mul(k, texel(b, x0, y1))), e = rgb_luminance(rgb_mul(k, texel(b, x1, y1)));
     float du = lerpf(c - a, e - d, ay) * (float)b->width, dv = -lerpf(d - a, e - c, ax) * (float)b->height;
-    if (t->wrap == SHEEN_WRAP_MIRROR) { // odd periods run backward
-        if (fmodf(fabsf(floorf(u)), 2.0f) == 1.0f) du = -du;
-        if (fmodf(fabsf(floorf(v)), 2.0f) == 1.0f) dv = -dv;
-    }
+    // Odd periods of a mirrored texture run backward.
+    if (t->wrap_u == SHEEN_WRAP_MIRROR && fmodf(fabsf(floorf(u)), 2.0f) == 1.0f) du = -du;
+    if (t->wrap_v == SHEEN_WRAP_MIRROR && fmodf(fabsf(floorf(v)), 2.0f) == 1.0f) dv = -dv;
     return v2(du * t->uv[0][0] + dv * t->uv[1][0], du * t->uv[0][1] + dv * t->uv[1][1]);
 }
 

@@ -31,7 +31,7 @@ typedef struct SheenTexture {
     Rgb value2; // second colour of the checkerboard; of the grid's lines
     Rgb scale;  // factor on the colours of a bitmap or a mesh
     SheenBitmap bitmap;
-    SheenWrap wrap;
+    SheenWrap wrap_u, wrap_v;
     bool nearest;     // nearest texel instead of bilinear
     float line_width; // grid: half the width of a line, in [0, 0.5]
     float uv[2][3];   // uv' = uv[.][0..1] (u, v) + uv[.][2]

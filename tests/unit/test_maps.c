@@ -25,7 +25,7 @@ static void test_gradients_are_derivatives(void **state)
     t.uv[0][0] = 1.3f, t.uv[0][1] = 0.4f, t.uv[0][2] = 0.1f, t.uv[1][0] = -0.6f, t.uv[1][1] = 0.9f;
     int n_smooth = 0;
     for (int i = 0; i < 3000; ++i) {
-        t.wrap = (SheenWrap)(i % 3);
+        t.wrap_u = (SheenWrap)(i % 3), t.wrap_v = (SheenWrap)(i / 3 % 3);
         Vec2 p = v2(random_in(&r, -2, 3), random_in(&r, -2, 3)), g = sheen_texture_gradient(&t, p);
         const float h = 1e-3f;
         double lo_u = (double)rgb_luminance(sheen_texture_eval(&t, v2(p.x - h, p.y)));

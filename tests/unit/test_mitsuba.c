@@ -646,7 +646,7 @@ static void bitmaps_lie_as_in_mitsuba(void **state)
     kit_assert_rgb(sheen_texture_eval(t, v2(0.25f, 0.75f)), rgb(1, 0, 0), 0.0f);
     kit_assert_rgb(sheen_texture_eval(t, v2(0.75f, 0.75f)), rgb(0, 1, 0), 0.0f);
     kit_assert_rgb(sheen_texture_eval(t, v2(0.25f, 0.25f)), rgb(0, 0, 1), 0.0f);
-    assert_int_equal(t->wrap, SHEEN_WRAP_REPEAT);
+    assert_int_equal(t->wrap_u, SHEEN_WRAP_REPEAT);
 
     t = &material(k, "3.0.0",
                   BITMAP("<transform name=\"to_uv\"><scale x=\"2\"/><translate x=\"0.5\" y=\"0.5\"/>"
@@ -663,7 +663,7 @@ static void bitmaps_lie_as_in_mitsuba(void **state)
     // Mitsuba's v in [0, 1] covers the upper half only.
     kit_assert_rgb(sheen_texture_eval(t, v2(0.25f, 0.1f)), rgb(0, 1, 0), 0.0f);
     kit_assert_rgb(sheen_texture_eval(t, v2(0.9f, 0.9f)), rgb(0, 1, 0), 0.0f);
-    assert_int_equal(t->wrap, SHEEN_WRAP_CLAMP);
+    assert_int_equal(t->wrap_v, SHEEN_WRAP_CLAMP);
 }
 
 static void checkerboards_lie_as_in_mitsuba(void **state)
@@ -734,6 +734,58 @@ static void byte_pictures_are_decoded(void **state)
         rgb_gray(byte), 1e-5f);
     kit_assert_rgb(sheen_texture_mean(&material(k, "0.6.0", PNG("<float name=\"gamma\" value=\"2\"/>"))->reflectance),
                    rgb_gray(byte * byte), 1e-5f);
+}
+
+static void maps_turn_and_wrap_pictures(void **state)
+{
+    Kit *k = *state;
+    write_picture(k);
+    const SheenTexture *t =
+        &material(k, "3.0.0",
+                  BITMAP("<transform name=\"to_uv\"><translate x=\"-0.5\" y=\"-0.5\"/><rotate z=\"1\" angle=\"90\"/>"
+                         "<translate x=\"0.5\" y=\"0.5\"/></transform>"))
+             ->reflectance;
+    // Mitsuba's (x, y) goes to (1 - y, x): its (0.25, 0.25) to (0.75, 0.25), green.
+    kit_assert_rgb(sheen_texture_eval(t, v2(0.25f, 0.75f)), rgb(0, 1, 0), 0.0f);
+    kit_assert_rgb(sheen_texture_eval(t, v2(0.75f, 0.75f)), rgb(1, 1, 1), 0.0f);
+    kit_assert_rgb(sheen_texture_eval(t, v2(0.25f, 0.25f)), rgb(1, 0, 0), 0.0f);
+    // Mirrored along u, held along v.
+    t = &material(k, "0.6.0",
+                  BITMAP("<string name=\"wrapModeU\" value=\"mirror\"/><string name=\"wrapModeV\" value=\"clamp\"/>"))
+             ->reflectance;
+    kit_assert_rgb(sheen_texture_eval(t, v2(1.25f, 0.75f)), rgb(0, 1, 0), 0.0f);
+    kit_assert_rgb(sheen_texture_eval(t, v2(0.25f, 1.75f)), rgb(1, 0, 0), 0.0f);
+    kit_assert_rgb(sheen_texture_eval(t, v2(1.75f, -0.25f)), rgb(0, 0, 1), 0.0f);
+    assert_int_equal(k->n_warnings, 2); // no light, no camera
+    t = &material(k, "0.6.0", BITMAP("<string name=\"channel\" value=\"g\"/>"))->reflectance;
+    kit_assert_rgb(sheen_texture_eval(t, v2(0.75f, 0.75f)), rgb_gray(1), 0.0f);
+    kit_assert_rgb(sheen_texture_eval(t, v2(0.25f, 0.75f)), rgb_gray(0), 0.0f);
+    material(k, "0.6.0", BITMAP("<string name=\"channel\" value=\"a\"/>"));
+    assert_non_null(strstr(k->warnings, "the channel 'a' of a picture is not supported: its colours stand in"));
+}
+
+/** The same two bytes of a picture as a portable pixmap and graymap. */
+static void pixmaps_are_pictures(void **state)
+{
+    Kit *k = *state;
+    kit_write(k, "c.ppm", "P6\n# a comment\n1 1\n255\n\x80\x40\x01");
+    kit_write(k, "g.pgm", "P5 1 1 255\n\x80");
+    const char *const names[] = {"c.ppm", "g.pgm"};
+    const Rgb want[] = {{128, 64, 1}, {128, 128, 128}};
+    for (int i = 0; i < 2; ++i) {
+        char body[512];
+        snprintf(body, sizeof body,
+                 "<bsdf type=\"diffuse\" id=\"m\"><texture type=\"bitmap\" name=\"reflectance\"><string "
+                 "name=\"filename\" value=\"%s\"/><boolean name=\"raw\" value=\"true\"/></texture></bsdf>",
+                 names[i]);
+        kit_assert_rgb(sheen_texture_mean(&material(k, "3.0.0", body)->reflectance), rgb_scale(want[i], 1.0f / 255.0f),
+                       1e-6f);
+    }
+    kit_write(k, "short.ppm", "P6 2 1 255\nabc");
+    char path[256];
+    SheenImage image;
+    kit_path(k, "short.ppm", path);
+    assert_int_equal(sheen_image_read(path, &k->log, &image), SHEEN_ERR_PARSE);
 }
 
 // ---- lights and cameras -----------------------------------------------------------------------------------------
@@ -1054,6 +1106,8 @@ int main(void)
         KIT_TEST(grids_and_scales),
         KIT_TEST(pictures_are_read_once),
         KIT_TEST(byte_pictures_are_decoded),
+        KIT_TEST(maps_turn_and_wrap_pictures),
+        KIT_TEST(pixmaps_are_pictures),
         KIT_TEST(lights),
         KIT_TEST(textured_lamps),
         KIT_TEST(environments),

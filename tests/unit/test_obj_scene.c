@@ -160,7 +160,7 @@ static void pictures_of_roughness_and_metal(void **state)
     assert_int_equal(m->kind, SHEEN_MATERIAL_PRINCIPLED);
     assert_float_equal(sheen_texture_mean(&m->alpha_u).g, 188.0f / 255.0f, 1e-3f);
     assert_float_equal(sheen_texture_mean(&m->principled->metallic).g, 188.0f / 255.0f, 1e-3f);
-    assert_int_equal(m->alpha_u.wrap, SHEEN_WRAP_CLAMP);
+    assert_int_equal(m->alpha_u.wrap_v, SHEEN_WRAP_CLAMP);
     m = material(k, "Kd .1 .2 .3\nPr 0.1\nPm 0.6\nmap_Pr none.png\nmap_Pm none.png"); // with warnings
     assert_float_equal(m->alpha_u.value.g, 0.1f, 1e-6f);
     assert_float_equal(m->principled->metallic.value.g, 0.6f, 1e-6f);
@@ -173,7 +173,7 @@ static void pictures_are_multiplied_by_the_colour(void **state)
     write_pixel(k, "a b.png");
     const SheenMaterial *m = material(k, "Kd .5 .5 .5\nmap_Kd -o 0.25 0.5 -s 2 3 1 -clamp on -mm 0 1 a b.png  ");
     assert_int_equal(m->reflectance.kind, SHEEN_TEXTURE_BITMAP);
-    assert_int_equal(m->reflectance.wrap, SHEEN_WRAP_CLAMP);
+    assert_int_equal(m->reflectance.wrap_u, SHEEN_WRAP_CLAMP);
     assert_true(m->reflectance.uv[0][0] == 2.0f && m->reflectance.uv[1][1] == 3.0f);
     assert_true(m->reflectance.uv[0][2] == 0.25f && m->reflectance.uv[1][2] == 0.5f);
     const float eps = 0.005f; // 8 bits

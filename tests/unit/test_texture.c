@@ -20,7 +20,7 @@ static SheenTexture bitmap(SheenWrap wrap, bool nearest)
     SheenTexture t = sheen_texture_constant(rgb_gray(0));
     t.kind = SHEEN_TEXTURE_BITMAP;
     t.bitmap = (SheenBitmap){.width = 2, .height = 2, .floats = pixels};
-    t.wrap = wrap;
+    t.wrap_u = t.wrap_v = wrap;
     t.nearest = nearest;
     return t;
 }
