@@ -166,7 +166,7 @@ static void gather_task(void *user, size_t item, unsigned worker)
     Hemisphere *h = &t->scratch[worker];
     sheen_hemisphere_begin(&d->points[record], point_key(d, record, 1), h);
     sheen_hemisphere_trace(d->work, &d->points[record], 1, h, &t->stats[worker]);
-    sheen_hemisphere_add_caustics(d->work, &d->points[record], h, &t->stats[worker]);
+    sheen_hemisphere_add_caustics(d->work, &d->points[record], 1.0f, h, &t->stats[worker]);
     DeepCell *cells = cells_of(d, record);
     for (size_t i = 0; i < h->cells; ++i) {
         cells[i] = (DeepCell){.p = h->specular[i] ? d->points[record].p : shines_in(d, record, h, i),

@@ -12,6 +12,9 @@
 static const float reach_min_px = 4.0f, reach_max_px = 25.0f;
 // A gather spends more rays until the standard error of its irradiance is expected to be so small.
 static const float gather_error = 0.03f;
+// A record that reaches no farther than the pixel's limit counts beside several others wherever it is read, so that it
+// may have as many times that error as its reach is enlarged, up to so many.
+static const float error_growth_max = 3.0f;
 enum {
     LIGHT_SAMPLES = 1,  // at each hit of a gather: the best value per ray of 1, 2 and 4
     EXTENSIONS_MAX = 2, // vertices by which near hits are moved on
@@ -106,15 +109,24 @@ static void choose_guide(const SheenFill *f, const DiffusePoint *p, Hemisphere *
     sheen_guide_choose(sheen_deep_hot_spots(f->deep), p->p, &h->frame, h->strata, mean, gather_error, &h->guide);
 }
 
-static void gather_light(const SheenFill *f, const DiffusePoint *p, uint32_t key, Hemisphere *h, SheenStats *stats)
+// The least R of a record: its reach is then reach_min_px.
+static float least_radius(const SheenOptions *o, float footprint)
+{
+    return reach_min_px * footprint / o->accuracy;
+}
+
+static void gather_light(const SheenFill *f, const DiffusePoint *p, float R_min, uint32_t key, Hemisphere *h,
+                         SheenStats *stats)
 {
     unsigned bounces = f->work->options.bounces;
     sheen_hemisphere_begin(p, key, h);
     if (f->deep) choose_guide(f, p, h);
     sheen_hemisphere_trace(f->work, p, bounces, h, stats);
     light_vertices(f, h, stats);
-    if (sheen_hemisphere_refine(f->work, p, bounces, gather_error, h, stats)) light_vertices(f, h, stats);
-    sheen_hemisphere_add_caustics(f->work, p, h, stats);
+    float enlarged = R_min / sheen_harmonic_mean((unsigned)h->cells, h->distance);
+    float noisier = clampf(enlarged, 1.0f, error_growth_max);
+    if (sheen_hemisphere_refine(f->work, p, bounces, noisier * gather_error, h, stats)) light_vertices(f, h, stats);
+    sheen_hemisphere_add_caustics(f->work, p, noisier, h, stats);
 }
 
 // Radius from the estimate: harmonic mean, bounded by the gradient, then by the pixel. Source:
@@ -122,7 +134,7 @@ static void gather_light(const SheenFill *f, const DiffusePoint *p, uint32_t key
 static void set_radius(const SheenOptions *o, const IrradianceEstimate *e, float footprint, IrradianceRecord *r)
 {
     float R_max = reach_max_px * footprint / o->accuracy;
-    r->R_min = reach_min_px * footprint / o->accuracy;
+    r->R_min = least_radius(o, footprint);
     float R = e->R;
     if (o->gradient_clamping) {
         float g = hypotf(rgb_luminance(e->translation[0]), rgb_luminance(e->translation[1]));
@@ -139,7 +151,7 @@ static void set_radius(const SheenOptions *o, const IrradianceEstimate *e, float
 static void make_record(const SheenFill *f, const ShadingPoint *p, uint32_t key, Hemisphere *h, SheenStats *stats,
                         IrradianceRecord *r)
 {
-    gather_light(f, &p->point, key, h, stats);
+    gather_light(f, &p->point, least_radius(&f->work->options, p->footprint), key, h, stats);
     for (size_t i = 0; i < h->cells; ++i)
         if (!rgb_finite(h->L[i])) {
             h->L[i] = rgb_gray(0.0f);

@@ -375,9 +375,10 @@ static void add_cut(Hemisphere *h, const Rgb values[], double share, double besi
     }
 }
 
-void sheen_hemisphere_add_caustics(const SheenWork *work, const DiffusePoint *point, Hemisphere *h, SheenStats *stats)
+void sheen_hemisphere_add_caustics(const SheenWork *work, const DiffusePoint *point, float noisier, Hemisphere *h,
+                                   SheenStats *stats)
 {
-    const double mirrored_most = 8.0, caustic_most = 2.0; // times the mean, a ray
+    double mirrored_most = 8.0 * (double)noisier, caustic_most = 2.0 * (double)noisier; // times the mean, a ray
     bool caustic = false, mirrored = false;
     for (size_t i = 0; i < h->cells; ++i) {
         h->mirrored[i] = h->specular[i] ? h->L[i] : rgb_gray(0.0f);

@@ -106,7 +106,9 @@ void sheen_hemisphere_direct(const SheenWork *work, size_t first, uint32_t sampl
  * the cells, the light straight from lamps on `point` included, and surfaces seen so are cut to 8 times the mean: what
  * a single ray finds there is noise that a cache would spread over a wide splotch. What one cell in 64 sees is not cut,
  * nor the soft sky. Energy that is cut is lost: small lamps inside glass are too weak.
+ * @param noisier  times by which both limits are higher
  */
-void sheen_hemisphere_add_caustics(const SheenWork *work, const DiffusePoint *point, Hemisphere *h, SheenStats *stats);
+void sheen_hemisphere_add_caustics(const SheenWork *work, const DiffusePoint *point, float noisier, Hemisphere *h,
+                                   SheenStats *stats);
 
 #endif
