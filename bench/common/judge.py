@@ -55,11 +55,13 @@ def cached(runs, reference):
 
 
 def line(points):
-    """Start and slope of a straight line, the start not below 0."""
-    if len(points) == 1:
-        return [0.0, points[0][1] / points[0][0]]
-    rate, start = np.polyfit([float(x) for x, _ in points], [y for _, y in points], 1)
-    return [short(max(start, 0.0)), short(rate, 4)]
+    """Start and slope of a straight line; through 0 where none with a start is to be had: with one point, or where a
+    busy machine disturbed the runs."""
+    x, y = max(points)
+    rate, start = np.polyfit(*np.array(points, float).T, 1) if len(points) > 1 else (0.0, 0.0)
+    if not (rate > 0 and start >= 0):
+        return [0.0, short(y / x, 4)]
+    return [short(start), short(rate, 4)]
 
 
 def path(runs, reference):
