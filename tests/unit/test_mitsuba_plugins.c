@@ -151,7 +151,7 @@ static void what_polarizes_only_dims(void **state)
 static void names_of_metals(void **state)
 {
     (void)state;
-    Rgb eta, k, other;
+    Rgb eta, k, other = rgb_gray(-1.0f);
     assert_true(sheen_metal_find("Na", &eta, &k) && sheen_metal_find("Na_palik", &other, &k));
     kit_assert_rgb(eta, other, 0.0f);
     assert_true(sheen_metal_find("Cu", &eta, &k) && sheen_metal_find("Cu_palik", &other, &k));
