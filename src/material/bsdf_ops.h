@@ -77,8 +77,9 @@ static inline int bsdf_interface_lobes(Vec3 wo_l, Vec3 wt_l, Rgb reflected, Rgb 
     return n;
 }
 
-/** Cosine-weighted sampling on the side of +z, for lobes with an eval; weight from eval. */
-bool sheen_bsdf_sample_cosine(const BsdfLobe *b, Vec3 wo, Vec2 u, BsdfSample *out);
+/** Cosine-weighted sampling on the side of +z, as operations of lobes with an eval; weight from eval. */
+bool sheen_bsdf_sample_cosine(const BsdfLobe *b, Vec3 wo, float choice, Vec2 u, BsdfSample *out);
+float sheen_bsdf_pdf_cosine(const BsdfLobe *b, Vec3 wo, Vec3 wi);
 static inline float bsdf_cosine_pdf(Vec3 wo, Vec3 wi)
 {
     return wo.z > 0.0f && wi.z > 0.0f ? wi.z * SHEEN_INV_PI : 0.0f;

@@ -3,14 +3,21 @@
 #include "material/bsdf_ops.h"
 #include "math/warp.h"
 
-bool sheen_bsdf_sample_cosine(const BsdfLobe *b, Vec3 wo, Vec2 u, BsdfSample *out)
+bool sheen_bsdf_sample_cosine(const BsdfLobe *b, Vec3 wo, float choice, Vec2 u, BsdfSample *out)
 {
+    (void)choice;
     if (!(wo.z > 0.0f)) return false;
     out->wi_l = warp_cosine_hemisphere(u);
     if (!(out->wi_l.z > 0.0f)) return false; // the rim of the disk, in rounding: density 0
     out->pdf = out->wi_l.z * SHEEN_INV_PI;
     out->weight = rgb_scale(b->ops->eval(b, wo, out->wi_l), 1.0f / out->pdf);
-    return true;
+    return !rgb_is_black(out->weight);
+}
+
+float sheen_bsdf_pdf_cosine(const BsdfLobe *b, Vec3 wo, Vec3 wi)
+{
+    (void)b;
+    return bsdf_cosine_pdf(wo, wi);
 }
 
 // Gauss-Legendre's rule in the cosine, which Schlick's powers are polynomials of, and the midpoint rule in the azimuth:
@@ -35,12 +42,6 @@ Rgb sheen_bsdf_albedo_of_diffuse(const BsdfLobe *b, Vec3 wo)
     return rgb_unit(sum);
 }
 
-static float lambert_pdf(const BsdfLobe *b, Vec3 wo, Vec3 wi)
-{
-    (void)b;
-    return bsdf_cosine_pdf(wo, wi);
-}
-
 static Rgb lambert_eval(const BsdfLobe *b, Vec3 wo, Vec3 wi)
 {
     // f |cos| is the reflectance times the density of cosine-weighted directions.
@@ -49,8 +50,7 @@ static Rgb lambert_eval(const BsdfLobe *b, Vec3 wo, Vec3 wi)
 
 static bool lambert_sample(const BsdfLobe *b, Vec3 wo, float choice, Vec2 u, BsdfSample *out)
 {
-    (void)choice;
-    if (rgb_is_black(b->reflectance) || !sheen_bsdf_sample_cosine(b, wo, u, out)) return false;
+    if (!sheen_bsdf_sample_cosine(b, wo, choice, u, out)) return false;
     out->weight = b->reflectance; // without rounding
     return true;
 }
@@ -67,7 +67,7 @@ static float lambert_importance(const BsdfLobe *b, Vec3 wo)
 
 const BsdfOps sheen_lobe_lambert = {.class = SHEEN_BSDF_DIFFUSE,
                                     .eval = lambert_eval,
-                                    .pdf = lambert_pdf,
+                                    .pdf = sheen_bsdf_pdf_cosine,
                                     .sample = lambert_sample,
                                     .albedo = lambert_albedo,
                                     .importance = lambert_importance};

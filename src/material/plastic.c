@@ -78,18 +78,6 @@ static Rgb base_eval(const BsdfLobe *b, Vec3 wo, Vec3 wi)
     return rgb_scale(rgb_mul(b->reflectance, b->transmittance), cosine * through(b, wo.z) * through(b, wi.z));
 }
 
-static float base_pdf(const BsdfLobe *b, Vec3 wo, Vec3 wi)
-{
-    (void)b;
-    return bsdf_cosine_pdf(wo, wi);
-}
-
-static bool base_sample(const BsdfLobe *b, Vec3 wo, float choice, Vec2 u, BsdfSample *out)
-{
-    (void)choice;
-    return !rgb_is_black(b->reflectance) && sheen_bsdf_sample_cosine(b, wo, u, out);
-}
-
 // The mean of the factor of wi over all directions: for the smooth interface by the symmetry of transmission,
 // 1 - mean from outside = ior^2 (1 - mean from inside).
 static Rgb base_albedo(const BsdfLobe *b, Vec3 wo)
@@ -102,7 +90,7 @@ static Rgb base_albedo(const BsdfLobe *b, Vec3 wo)
 
 const BsdfOps sheen_lobe_coated_lambert = {.class = SHEEN_BSDF_DIFFUSE,
                                            .eval = base_eval,
-                                           .pdf = base_pdf,
-                                           .sample = base_sample,
+                                           .pdf = sheen_bsdf_pdf_cosine,
+                                           .sample = sheen_bsdf_sample_cosine,
                                            .albedo = base_albedo,
                                            .importance = bsdf_albedo_importance};

@@ -67,18 +67,6 @@ static Rgb diffuse_eval(const BsdfLobe *b, Vec3 wo, Vec3 wi)
     return rgb_scale(value, wi.z);
 }
 
-static float diffuse_pdf(const BsdfLobe *b, Vec3 wo, Vec3 wi)
-{
-    (void)b;
-    return bsdf_cosine_pdf(wo, wi);
-}
-
-static bool diffuse_sample(const BsdfLobe *b, Vec3 wo, float choice, Vec2 u, BsdfSample *out)
-{
-    (void)choice;
-    return sheen_bsdf_sample_cosine(b, wo, u, out);
-}
-
 static float diffuse_importance(const BsdfLobe *b, Vec3 wo)
 {
     if (!(wo.z > 0.0f)) return 0.0f;
@@ -87,8 +75,8 @@ static float diffuse_importance(const BsdfLobe *b, Vec3 wo)
 
 const BsdfOps sheen_lobe_principled_diffuse = {.class = SHEEN_BSDF_DIFFUSE,
                                                .eval = diffuse_eval,
-                                               .pdf = diffuse_pdf,
-                                               .sample = diffuse_sample,
+                                               .pdf = sheen_bsdf_pdf_cosine,
+                                               .sample = sheen_bsdf_sample_cosine,
                                                .albedo = sheen_bsdf_albedo_of_diffuse,
                                                .importance = diffuse_importance};
 

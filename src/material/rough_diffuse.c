@@ -59,18 +59,6 @@ static Rgb rough_diffuse_eval(const BsdfLobe *b, Vec3 wo, Vec3 wi)
     return rgb_scale(rgb_mad(rgb_scale(c, once), twice, rgb_mul(c, c)), wi.z * SHEEN_INV_PI);
 }
 
-static float rough_diffuse_pdf(const BsdfLobe *b, Vec3 wo, Vec3 wi)
-{
-    (void)b;
-    return bsdf_cosine_pdf(wo, wi);
-}
-
-static bool rough_diffuse_sample(const BsdfLobe *b, Vec3 wo, float choice, Vec2 u, BsdfSample *out)
-{
-    (void)choice;
-    return !rgb_is_black(b->reflectance) && sheen_bsdf_sample_cosine(b, wo, u, out);
-}
-
 static float rough_diffuse_importance(const BsdfLobe *b, Vec3 wo)
 {
     return wo.z > 0.0f ? rgb_max(b->reflectance) : 0.0f;
@@ -78,7 +66,7 @@ static float rough_diffuse_importance(const BsdfLobe *b, Vec3 wo)
 
 const BsdfOps sheen_lobe_rough_diffuse = {.class = SHEEN_BSDF_DIFFUSE,
                                           .eval = rough_diffuse_eval,
-                                          .pdf = rough_diffuse_pdf,
-                                          .sample = rough_diffuse_sample,
+                                          .pdf = sheen_bsdf_pdf_cosine,
+                                          .sample = sheen_bsdf_sample_cosine,
                                           .albedo = sheen_bsdf_albedo_of_diffuse,
                                           .importance = rough_diffuse_importance};

@@ -56,6 +56,15 @@ static inline SheenFilm *stage_render(const Stage *stage, const SheenRenderSetti
     return film;
 }
 
+/** The picture of a scene in the making, on two threads. */
+static inline SheenFilm *stage_picture(SheenBuilder *b, const SheenRenderSettings *settings)
+{
+    Stage stage = stage_end(b, 2);
+    SheenFilm *film = stage_render(&stage, settings, NULL);
+    stage_free(&stage);
+    return film;
+}
+
 /** The reference: the same picture by paths. */
 static inline SheenFilm *stage_reference(const Stage *stage, const SheenRenderSettings *settings, uint32_t spp,
                                          uint32_t seed)

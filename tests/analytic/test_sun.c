@@ -33,14 +33,6 @@ static SheenRenderSettings settings_of(int integrator, uint32_t bounces, uint32_
     return s;
 }
 
-static SheenFilm *picture(SheenBuilder *b, const SheenRenderSettings *settings)
-{
-    Stage stage = stage_end(b, 2);
-    SheenFilm *film = stage_render(&stage, settings, NULL);
-    stage_free(&stage);
-    return film;
-}
-
 // Samples fill the disk evenly, and the density is that of its solid angle: radiance over density is the irradiance.
 static void test_samples_are_even_over_the_disk(void **state)
 {
@@ -99,7 +91,7 @@ static void test_the_disk_is_seen(void **state)
                 else
                     kit_camera(b, v3(0, 0, 0), v3(0, 0, 1), v3(0, 1, 0), fov);
                 SheenRenderSettings s = settings_of(integrator, 0, 16);
-                SheenFilm *film = picture(b, &s);
+                SheenFilm *film = stage_picture(b, &s);
                 double L = disk_radiance(3.0, (double)REAL), side = 2.0 * tan(0.5 * (double)fov);
                 if (whole) // the rim passes through one pixel in twelve, 16 samples each
                     assert_true(fabs(film_mean(film) * side * side / 3.0 - 1.0) < 5e-3);
@@ -125,7 +117,7 @@ static void test_a_plane_under_a_wide_sun(void **state)
             kit_camera(b, v3(0, -1, 1), v3(0, 0, 0), v3(0, 0, 1), 0.01f);
             SheenRenderSettings s = settings_of(integrator, 0, 128);
             if (!integrator) s.options.light_samples = 1; // it is to choose
-            SheenFilm *film = picture(b, &s);
+            SheenFilm *film = stage_picture(b, &s);
             double E = low ? disk_radiance(2.0, (double)r) * ((double)r - sin((double)r) * cos((double)r)) : 1.6;
             kit_assert_mean(film, 0.5 * (E + 0.001) / (double)SHEEN_PI, 1e-4, 5e-3, low ? "low sun" : "sun");
             sheen_film_destroy(&film);
@@ -161,7 +153,7 @@ static void test_a_sun_is_a_far_lamp(void **state)
             }
             kit_camera(b, v3(0, -4, 0), v3(0, 0, 0), v3(0, 0, 1), 0.5f);
             SheenRenderSettings s = settings_of(integrator, 0, 64);
-            SheenFilm *film = picture(b, &s);
+            SheenFilm *film = stage_picture(b, &s);
             mean[far] = film_mean(film);
             sheen_film_destroy(&film);
         }

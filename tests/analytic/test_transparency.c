@@ -62,21 +62,13 @@ static SheenRenderSettings direct_settings(SheenIntegrator integrator)
     return s;
 }
 
-static SheenFilm *picture(SheenBuilder *b, const SheenRenderSettings *settings)
-{
-    Stage stage = stage_end(b, 2);
-    SheenFilm *film = stage_render(&stage, settings, NULL);
-    stage_free(&stage);
-    return film;
-}
-
 // With the same seed both pictures ask the lamp from the same points: they differ by the factor and nothing else.
 static void test_a_point_light_behind_sheets(void **state)
 {
     (void)state;
     for (int integrator = 0; integrator < 2; ++integrator) {
         SheenRenderSettings s = direct_settings(integrator ? SHEEN_INTEGRATOR_PATH : SHEEN_INTEGRATOR_IRRADIANCE);
-        SheenFilm *open = picture(lit_floor(), &s);
+        SheenFilm *open = stage_picture(lit_floor(), &s);
         // Irradiance I h / d^3 times albedo / pi in the middle, where it changes least.
         double middle = film_mean_of(open, 15, 15, 17, 17), I = (double)rgb_luminance(rgb(5, 4, 3));
         assert_true(fabs(middle / (0.8 * I / 4.0 / (double)SHEEN_PI) - 1.0) < 3e-3); // 1.5 r^2 / h^2, r < 0.09
@@ -84,7 +76,7 @@ static void test_a_point_light_behind_sheets(void **state)
             SheenBuilder *b = lit_floor();
             sheet(b, 1.0f, gray_mask(b, 0.3f, 0.0f));
             if (sheets == 2) sheet(b, 1.5f, gray_mask(b, 0.5f, 0.0f));
-            SheenFilm *film = picture(b, &s);
+            SheenFilm *film = stage_picture(b, &s);
             for (size_t i = 0; i < 32 * 32; ++i) {
                 float want = open->color[i].g * (sheets == 2 ? 0.35f : 0.7f);
                 assert_true(want > 0.0f && fabsf(film->color[i].g - want) <= 1e-6f * want); // rounding of sums of 4
@@ -101,10 +93,10 @@ static void test_the_shadow_of_a_checkerboard(void **state)
     (void)state;
     for (int integrator = 0; integrator < 2; ++integrator) {
         SheenRenderSettings s = direct_settings(integrator ? SHEEN_INTEGRATOR_PATH : SHEEN_INTEGRATOR_IRRADIANCE);
-        SheenFilm *open = picture(lit_floor(), &s);
+        SheenFilm *open = stage_picture(lit_floor(), &s);
         SheenBuilder *b = lit_floor();
         sheet(b, 1.0f, add_mask(b, checkerboard(8.0f), 0.0f)); // fields of 1/4, on the floor 1/2: 8 pixels
-        SheenFilm *film = picture(b, &s);
+        SheenFilm *film = stage_picture(b, &s);
         unsigned dark = 0, lit = 0;
         for (uint32_t y = 0; y < 32; ++y)
             for (uint32_t x = 0; x < 32; ++x) {
@@ -140,7 +132,7 @@ static void test_an_environment_behind_a_dome(void **state)
         SheenRenderSettings s = small_settings(2);
         s.integrator = integrator ? SHEEN_INTEGRATOR_PATH : SHEEN_INTEGRATOR_IRRADIANCE;
         s.options.spp = integrator ? 64 : 4;
-        SheenFilm *film = picture(b, &s);
+        SheenFilm *film = stage_picture(b, &s);
         // The gathers of a cached picture are few; each stops some of its rays by chance.
         if (integrator)
             kit_assert_mean(film, 0.6, 1e-5, 5e-3, "dome");
@@ -223,7 +215,7 @@ static void test_foliage_of_a_hundred_layers(void **state)
         kit_camera(b, v3(0, 0, 0), v3(0, 0, 1), v3(0, 1, 0), 0.2f);
         SheenRenderSettings s = direct_settings(integrator ? SHEEN_INTEGRATOR_PATH : SHEEN_INTEGRATOR_IRRADIANCE);
         s.options.spp = integrator ? 64 : 1;
-        SheenFilm *film = picture(b, &s);
+        SheenFilm *film = stage_picture(b, &s);
         double expected = pow(0.98, 100.0);
         KitMean m = kit_mean(film, expected);
         if (integrator)
