@@ -70,7 +70,7 @@ static void test_room_with_a_glossy_ball(void **state)
         SheenRenderSettings s = small_settings(8);
         s.options.spp = 16;
         s.options.gather_rays = 256;
-        assert_agrees_with_paths(&stage, &s, 512, cases[i].mean, cases[i].block, cases[i].name);
+        assert_agrees_with_paths(&stage, &s, 256, cases[i].mean, cases[i].block, cases[i].name);
         stage_free(&stage);
     }
 }
