@@ -2,6 +2,7 @@
 // The pool: each item once, one item a worker at a time, cancel between items, many batches on one pool.
 #include "base/pool.h"
 
+#include <sched.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -32,7 +33,10 @@ static void run_item(void *user, size_t item, unsigned worker)
     }
     if (atomic_fetch_add(&b->inside[worker], 1) != 0) atomic_fetch_add(&b->overlaps, 1);
     atomic_fetch_add(&b->runs[item], 1);
-    if (atomic_fetch_add(&b->total, 1) + 1 == b->cancel_after) atomic_store(b->cancel, true);
+    unsigned number = atomic_fetch_add(&b->total, 1) + 1;
+    if (number == b->cancel_after) atomic_store(b->cancel, true);
+    // Items counted later wait for the flag: the worker that raises it may be kept from doing so.
+    while (b->cancel_after > 0 && number > b->cancel_after && !atomic_load(b->cancel)) sched_yield();
     atomic_fetch_sub(&b->inside[worker], 1);
 }
 
