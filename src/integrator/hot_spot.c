@@ -84,9 +84,7 @@ Vec3 sheen_cone_direction(const Cone *cone, Vec2 u)
 {
     float sin2 = 0.9999f * cone->sin2_max; // a hair inside, so that guide_density finds it
     Frame f = frame_from_normal(cone->axis);
-    float h = u.x * sin2 / (1.0f + safe_sqrtf(1.0f - sin2)); // 1 - cosine
-    float r = safe_sqrtf(h * (2.0f - h)), phi = 2.0f * SHEEN_PI * u.y;
-    return v3_normalize(frame_to_world(&f, v3(r * cosf(phi), r * sinf(phi), 1.0f - h)));
+    return v3_normalize(frame_to_world(&f, warp_cone(u, sin2 / (1.0f + safe_sqrtf(1.0f - sin2)))));
 }
 
 // The same spots seen from another point: `density` becomes what one ray has that chooses among them by what they

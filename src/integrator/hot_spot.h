@@ -63,9 +63,8 @@ void sheen_guide_choose(const HotSpots *spots, Vec3 p, const Frame *frame, Sheen
 static inline float guide_density(const Guide *g, Vec3 d)
 {
     float sum = 0.0f;
-    for (uint32_t i = 0; i < g->n; ++i) // the sine is exact where the cosine of a narrow cone is not
-        if (v3_dot(d, g->cones[i].axis) > 0.0f && v3_length2(v3_cross(d, g->cones[i].axis)) <= g->cones[i].sin2_max)
-            sum += g->cones[i].density;
+    for (uint32_t i = 0; i < g->n; ++i)
+        if (v3_in_cone(d, g->cones[i].axis, g->cones[i].sin2_max)) sum += g->cones[i].density;
     return sum;
 }
 

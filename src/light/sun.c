@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "light/sun.h"
 
+#include "math/warp.h"
+
 // The integral of the cosine over a cone of half-angle r about the normal is pi sin^2 r, its solid angle
 // 2 pi (1 - cos r).
 SunDisk sheen_sun_disk(const SheenLight *light)
@@ -15,6 +17,5 @@ SunDisk sheen_sun_disk(const SheenLight *light)
 
 Vec3 sheen_sun_disk_sample(const SunDisk *disk, Vec2 u)
 {
-    float z = u.x * disk->height, r = sqrtf(z * (2.0f - z)), phi = 2.0f * SHEEN_PI * u.y;
-    return v3_normalize(frame_to_world(&disk->frame, v3(r * cosf(phi), r * sinf(phi), 1.0f - z)));
+    return v3_normalize(frame_to_world(&disk->frame, warp_cone(u, disk->height)));
 }

@@ -19,10 +19,10 @@ SunDisk sheen_sun_disk(const SheenLight *light);
 /** @return a unit direction to the disk, uniform over its solid angle. */
 Vec3 sheen_sun_disk_sample(const SunDisk *disk, Vec2 u);
 
-/** @return whether wi (unit) points to the disk. By the sine: the cosine of a narrow cone is not exact. */
+/** @return whether wi (unit) points to the disk. */
 static inline bool sun_disk_covers(const SunDisk *disk, Vec3 wi)
 {
-    return v3_dot(wi, disk->frame.n) > 0.0f && v3_length2(v3_cross(wi, disk->frame.n)) <= disk->sin2;
+    return v3_in_cone(wi, disk->frame.n, disk->sin2);
 }
 
 #endif

@@ -104,6 +104,14 @@ static inline float v3_length(Vec3 a)
     return sqrtf(v3_length2(a));
 }
 /** @return a / |a|; the zero vector stays zero. */
+/**
+ * @return whether d points into the cone about `axis`, both unit; by the sine of the half angle, which is below 90
+ * degrees, since the cosine of a narrow cone is not exact.
+ */
+static inline bool v3_in_cone(Vec3 d, Vec3 axis, float sin2)
+{
+    return v3_dot(d, axis) > 0.0f && v3_length2(v3_cross(d, axis)) <= sin2;
+}
 static inline Vec3 v3_normalize(Vec3 a)
 {
     float l = v3_length(a);

@@ -44,11 +44,14 @@ static inline Vec3 warp_sphere(Vec2 u)
     return v3(r * cosf(phi), r * sinf(phi), z);
 }
 
-/** Uniform direction in the cone of directions with cosine to +z above cos_max: density 1/(2 pi (1 - cos_max)). */
-static inline Vec3 warp_cone(Vec2 u, float cos_max)
+/**
+ * Uniform direction in a cone about +z: density 1/(2 pi height).
+ * @param height  1 - cos of the half angle, which keeps narrow cones exact
+ */
+static inline Vec3 warp_cone(Vec2 u, float height)
 {
-    float z = 1.0f - u.x * (1.0f - cos_max), r = safe_sqrtf(1.0f - z * z), phi = 2.0f * SHEEN_PI * u.y;
-    return v3(r * cosf(phi), r * sinf(phi), z);
+    float h = u.x * height, r = safe_sqrtf(h * (2.0f - h)), phi = 2.0f * SHEEN_PI * u.y;
+    return v3(r * cosf(phi), r * sinf(phi), 1.0f - h);
 }
 
 /** Uniform barycentric coordinates (b1, b2) of a triangle: density 1/area. Source: heitz2019-triangle. */
