@@ -81,6 +81,16 @@ static inline void kit_path(const Kit *k, const char *name, char out[256])
     snprintf(out, 256, "%s/%s", k->folder, name);
 }
 
+/** Path of a file of the scene collection: SHEEN_SCENES names its folder, else ../shared/scenes is meant. */
+static inline void kit_shared_path(const char *name, char out[512])
+{
+    const char *folder = getenv("SHEEN_SCENES");
+    if (folder)
+        snprintf(out, 512, "%s/%s", folder, name);
+    else
+        snprintf(out, 512, "%s/../shared/scenes/%s", SHEEN_TEST_SOURCE_DIR, name);
+}
+
 static inline void kit_write_bytes(const Kit *k, const char *name, const void *data, size_t size)
 {
     char path[256];

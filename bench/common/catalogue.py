@@ -2,7 +2,6 @@
 """The scenes of the gallery: the bundled ones and those of SHEEN_SCENES, with their authors."""
 
 import glob
-import hashlib
 import json
 import os
 import re
@@ -108,7 +107,6 @@ def triangles(scene):
 
 def fingerprint(scene):
     """Changes when the scene or what it may read does."""
-    digest = hashlib.sha256()
     folder, file = os.path.split(scene.path)
     if file == scene.name + ".xml":  # bundled: what it reads is in a folder of its name
         paths, folder = [scene.path], os.path.join(folder, scene.name)
@@ -117,7 +115,4 @@ def fingerprint(scene):
     for where, _, files in sorted(os.walk(folder)):
         paths += [os.path.join(where, f) for f in sorted(files)
                   if f.endswith(READ) and not f.startswith("TungstenRender")]
-    for path in paths:
-        with open(path, "rb") as data:
-            digest.update(data.read())
-    return digest.hexdigest()[:12]
+    return running.digest(paths)

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Converged pictures by path tracing, made once and kept in build/bench/references."""
 
-import hashlib
 import os
 
 import pictures
@@ -10,15 +9,11 @@ import running
 
 def fingerprint(scene, folders, options):
     """Changes when the scene, a file beside it or an option does; the program is taken to be right."""
-    digest = hashlib.sha256(repr(sorted(options.items())).encode())
     paths = [scene]
     for start in folders:
         for where, _, names in sorted(os.walk(start)):
             paths += [os.path.join(where, name) for name in sorted(names)]
-    for path in paths:
-        with open(path, "rb") as file:
-            digest.update(file.read())
-    return digest.hexdigest()[:12]
+    return running.digest(paths, repr(sorted(options.items())).encode())
 
 
 def halves(name, scene, folders, spp, **options):

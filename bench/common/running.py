@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs programs and measures them."""
 
+import hashlib
 import json
 import os
 import subprocess
@@ -53,6 +54,15 @@ def beside(variable, *parts):
     default = {"SHEEN_SCENES": "scenes", "SHEEN_PEERS": "peers"}[variable]
     base = os.environ.get(variable, os.path.join(os.path.dirname(ROOT), "shared", default))
     return os.path.join(base, *parts)
+
+
+def digest(paths, start=b""):
+    """A short name of what the files hold, after the bytes of `start`."""
+    found = hashlib.sha256(start)
+    for path in paths:
+        with open(path, "rb") as data:
+            found.update(data.read())
+    return found.hexdigest()[:12]
 
 
 def measure(command, cwd=None):

@@ -169,9 +169,9 @@ static void gather_task(void *user, size_t item, unsigned worker)
     sheen_hemisphere_add_caustics(d->work, &d->points[record], 1.0f, h, &t->stats[worker]);
     DeepCell *cells = cells_of(d, record);
     for (size_t i = 0; i < h->cells; ++i) {
-        cells[i] = (DeepCell){.p = h->specular[i] ? d->points[record].p : shines_in(d, record, h, i),
-                              .sky = h->L[i],
-                              .distance = h->distance[i]};
+        bool sky = isinf(h->distance[i]) && !h->specular[i];
+        cells[i] = (DeepCell){
+            .p = sky ? shines_in(d, record, h, i) : d->points[record].p, .sky = h->L[i], .distance = h->distance[i]};
         h->L[i] = rgb_gray(0.0f);
     }
     sheen_hemisphere_direct(d->work, 0, 1, h, &t->stats[worker]);

@@ -359,6 +359,16 @@ static SheenStatus read_role(Reader *r, const Property *p, float value[INDICES])
     return s;
 }
 
+/** Gives the triangles from `first` on a colour, in files whose faces have some. */
+static SheenStatus color_triangles(Reader *r, uint32_t first, Rgb color)
+{
+    if (!r->has_face_colors) return SHEEN_OK;
+    if (!sheen_reserve((void **)&r->face_colors, &r->face_color_capacity, r->n_triangles, sizeof *r->face_colors))
+        return no_memory(r);
+    for (uint32_t i = first; i < r->n_triangles; ++i) r->face_colors[i] = color;
+    return SHEEN_OK;
+}
+
 /** A face and the colour of all triangles that it is cut into. */
 static SheenStatus read_whole_face(Reader *r, const Element *e, const MeshData *mesh)
 {
@@ -369,12 +379,7 @@ static SheenStatus read_whole_face(Reader *r, const Element *e, const MeshData *
         SheenStatus s = p->role == INDICES ? read_face(r, p, mesh) : read_role(r, p, value);
         if (s) return s;
     }
-    if (!r->has_face_colors) return SHEEN_OK;
-    if (!sheen_reserve((void **)&r->face_colors, &r->face_color_capacity, r->n_triangles, sizeof *r->face_colors))
-        return no_memory(r);
-    for (uint32_t i = first; i < r->n_triangles; ++i)
-        r->face_colors[i] = rgb(value[FACE_COLOR], value[FACE_COLOR + 1], value[FACE_COLOR + 2]);
-    return SHEEN_OK;
+    return color_triangles(r, first, rgb(value[FACE_COLOR], value[FACE_COLOR + 1], value[FACE_COLOR + 2]));
 }
 
 /** Strips of triangles, each vertex one more triangle with the two before it; -1 begins another strip. */
@@ -401,11 +406,7 @@ static SheenStatus read_strips(Reader *r, const Property *p, const MeshData *mes
         const uint32_t t[3] = {odd ? b : a, odd ? a : b, v};
         memcpy(r->triangles[r->n_triangles++], t, sizeof t);
     }
-    if (s || !r->has_face_colors) return s;
-    if (!sheen_reserve((void **)&r->face_colors, &r->face_color_capacity, r->n_triangles, sizeof *r->face_colors))
-        return no_memory(r);
-    for (uint32_t i = first; i < r->n_triangles; ++i) r->face_colors[i] = rgb_gray(0.0f);
-    return SHEEN_OK;
+    return s ? s : color_triangles(r, first, rgb_gray(0.0f));
 }
 
 static SheenStatus read_vertex(Reader *r, const Element *e, MeshData *out, uint32_t index)

@@ -55,15 +55,6 @@ static const Expected files[] = {
     {"usemtl-issue-68.obj", 400, 2, NULL, false},
 };
 
-static void find(const char *name, char path[512])
-{
-    const char *folder = getenv("SHEEN_SCENES");
-    if (folder)
-        snprintf(path, 512, "%s/obj/tinyobj-models/%s", folder, name);
-    else
-        snprintf(path, 512, "%s/../shared/scenes/obj/tinyobj-models/%s", SHEEN_TEST_SOURCE_DIR, name);
-}
-
 static void check(Kit *k, const Expected *e, const char *path)
 {
     kit_reset(k);
@@ -88,8 +79,9 @@ static void each_loads_or_is_refused(void **state)
     Kit *k = *state;
     int skipped = 0, n = (int)(sizeof files / sizeof *files);
     for (int i = 0; i < n; ++i) {
-        char path[512];
-        find(files[i].file, path);
+        char name[256], path[512];
+        snprintf(name, sizeof name, "obj/tinyobj-models/%s", files[i].file);
+        kit_shared_path(name, path);
         if (sheen_path_readable(path))
             check(k, &files[i], path);
         else

@@ -21,15 +21,6 @@ static const Expected scenes[] = {
     {"mitsuba/veach-mis/scene.xml", 52, 3},        {"mitsuba/veach-mis/scene_v3.xml", 52, 3},
 };
 
-static void find(const char *name, char path[512])
-{
-    const char *folder = getenv("SHEEN_SCENES");
-    if (folder)
-        snprintf(path, 512, "%s/%s", folder, name);
-    else
-        snprintf(path, 512, "%s/../shared/scenes/%s", SHEEN_TEST_SOURCE_DIR, name);
-}
-
 /** Sums the triangles that the builder's warnings say it left out ("FILE: NAME: 6 of 38 triangles ..."). */
 static uint32_t left_out(const Kit *k)
 {
@@ -62,7 +53,7 @@ static void all_load_with_their_triangles_and_lights(void **state)
     int skipped = 0, n = (int)(sizeof scenes / sizeof *scenes);
     for (int i = 0; i < n; ++i) {
         char path[512];
-        find(scenes[i].file, path);
+        kit_shared_path(scenes[i].file, path);
         if (sheen_path_readable(path))
             check(k, &scenes[i], path);
         else
@@ -80,7 +71,7 @@ static void versions_agree(void **state)
         char path[2][512], file[64];
         for (int j = 0; j < 2; ++j) {
             snprintf(file, sizeof file, "mitsuba/%s/scene%s.xml", names[i], j ? "_v3" : "");
-            find(file, path[j]);
+            kit_shared_path(file, path[j]);
         }
         if (!sheen_path_readable(path[0]) || !sheen_path_readable(path[1])) continue;
         kit_reset(k);
