@@ -54,8 +54,8 @@ typedef struct LobeReading {
 /**
  * The represented part of a BSDF toward wo: the sum over its lobes of share times f cos(theta_i), so that the light it
  * reflects is the dot product with the coefficients of the incident radiance. Its error is within the desc's; a lobe's
- * share is 1 where order n_max represents it with half of that error, and falls smoothly to 0 where it does not with all
- * of it. All vary continuously with wo and the textures, the order's last band included.
+ * share is 1 where order n_max represents it with half of that error, and falls smoothly to 0 where it does not with
+ * all of it. All vary continuously with wo and the textures, the order's last band included.
  *
  * Frames: SH are those of the local frame, that of wo_l. HSH are those of the hemisphere on the side of wo: seen from
  * behind, wo_l.z < 0, directions are mirrored, (x, y, -z).
