@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The hemisphere cut into rings and sectors of equal projected solid angle.
+// The hemisphere cut into rings and sectors of equal solid angle, plain or projected.
 #ifndef SHEEN_GATHER_STRATA_H
 #define SHEEN_GATHER_STRATA_H
 
@@ -10,23 +10,37 @@
 /** Most rings that strata may have. */
 enum { SHEEN_RINGS_MAX = 512 };
 
+/** What all cells have the same of: projected solid angle, for irradiance, or solid angle, for radiance. */
+typedef enum SheenDensity { SHEEN_DENSITY_COSINE, SHEEN_DENSITY_UNIFORM } SheenDensity;
+
 /** M rings times N sectors. Cells are numbered sector-major: cell k M + j is ring j (0 at the pole) of sector k. */
 typedef struct SheenStrata {
     unsigned rings, sectors;
+    SheenDensity density;
 } SheenStrata;
 
 /** Strata of about `n_rays` cells (at least 4) with N = pi M: cells near square. Source: ward1992-gradients, sec. 3. */
 SheenStrata sheen_strata_cosine(unsigned n_rays);
+
+/** The same of equal solid angle, with N = 4 M. Source: krivanek2005-improved-radiance-gradients, sec. 2. */
+SheenStrata sheen_strata_uniform(unsigned n_rays);
 
 static inline unsigned strata_count(SheenStrata s)
 {
     return s.rings * s.sectors;
 }
 
+/** Density of the samples, one in each cell, with respect to solid angle; their sum over the hemisphere is 1. */
+static inline float strata_pdf(SheenStrata s, float cos_theta)
+{
+    return s.density == SHEEN_DENSITY_UNIFORM ? 0.5f * SHEEN_INV_PI : SHEEN_INV_PI * cos_theta;
+}
+
 /**
- * The direction of a sample in cell (j, k), cosine-weighted within the cell.
+ * The direction of a sample in cell (j, k), of the density of the strata within the cell.
  * @param u  position in the cell, [0, 1)^2
- * @return   unit, local: sin^2(theta) = (j + u.x) / M, phi = 2 pi (k + u.y) / N
+ * @return   unit, local: phi = 2 pi (k + u.y) / N and, with t = (j + u.x) / M, sin^2(theta) = t for cosine-weighted
+ *           strata, cos(theta) = 1 - t for uniform ones
  */
 Vec3 sheen_strata_direction(SheenStrata s, unsigned j, unsigned k, Vec2 u);
 

@@ -11,7 +11,7 @@
 // (docs/irradiance-caching.md).
 static const float deep_accuracy = 0.5f;
 enum { DEEP_RINGS = 12, DEEP_SECTORS = 36, DEEP_CELLS = DEEP_RINGS * DEEP_SECTORS };
-static const SheenStrata deep_strata = {DEEP_RINGS, DEEP_SECTORS};
+static const SheenStrata deep_strata = {.rings = DEEP_RINGS, .sectors = DEEP_SECTORS};
 enum {
     PROBES = 24,    // rays that estimate the radius of a record before it is placed
     FOLLOWED = 12,  // hits of those that are looked at next

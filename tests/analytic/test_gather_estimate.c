@@ -113,7 +113,7 @@ static void test_cell_centres_agree_with_second_implementation(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         const Case *c = &cases[i];
         IrradianceEstimate e;
-        gather(c->scene, c->p, (SheenStrata){RINGS, SECTORS}, false, 0, &e);
+        gather(c->scene, c->p, (SheenStrata){.rings = RINGS, .sectors = SECTORS}, false, 0, &e);
         // Directions are float: a ray or two of 1024 at the sphere's edge may fall on its other side, none did here;
         // what is left is float rounding of directions, some 1e-6 of a sum of 1024 terms of both signs.
         assert_true(fabs((double)e.E.r - c->cell_E) < 2e-5 * c->cell_E);
@@ -133,7 +133,7 @@ static void test_jittered_mean_is_the_exact_irradiance(void **state)
         double sum = 0.0, sum2 = 0.0;
         for (uint32_t n = 0; n < REPEATS; ++n) {
             IrradianceEstimate e;
-            gather(c->scene, c->p, (SheenStrata){RINGS, SECTORS}, true, n + 1, &e);
+            gather(c->scene, c->p, (SheenStrata){.rings = RINGS, .sectors = SECTORS}, true, n + 1, &e);
             sum += (double)e.E.r;
             sum2 += (double)e.E.r * (double)e.E.r;
         }
@@ -158,7 +158,7 @@ static void test_gradient_converges_to_dense_quadrature(void **state)
         double gx = 0.0, gy = 0.0;
         for (uint32_t n = 0; n < REPEATS; ++n) {
             IrradianceEstimate e;
-            gather(c->scene, c->p, (SheenStrata){64, 200}, true, 1000 + n, &e);
+            gather(c->scene, c->p, (SheenStrata){.rings = 64, .sectors = 200}, true, 1000 + n, &e);
             gx += (double)e.translation[0].r / REPEATS;
             gy += (double)e.translation[1].r / REPEATS;
         }
@@ -176,7 +176,7 @@ static void test_rotation_gradient_is_the_derivative(void **state)
     static Rgb L[M * N];
     static float r[M * N];
     const double a = 0.4, b = -0.3;
-    SheenStrata s = {M, N};
+    SheenStrata s = {.rings = M, .sectors = N};
     for (unsigned k = 0, i = 0; k < N; ++k)
         for (unsigned j = 0; j < M; ++j, ++i) {
             d[i] = sheen_strata_direction(s, j, k, v2(0.5f, 0.5f));

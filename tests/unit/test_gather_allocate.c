@@ -13,7 +13,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const SheenStrata strata = {10, 32};
+static const SheenStrata strata = {.rings = 10, .sectors = 32};
 enum { CELLS = 320 };
 
 // A hemisphere with a bright patch that covers some cells wholly, and cells beside it in part: a sample of such a cell

@@ -10,7 +10,7 @@
 #include "base/hash.h"
 #include "integrator/hot_spot.h"
 
-static const SheenStrata strata = {11, 36};
+static const SheenStrata strata = {.rings = 11, .sectors = 36};
 
 static Vec2 numbers(uint32_t i)
 {
