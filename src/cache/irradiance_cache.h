@@ -1,67 +1,59 @@
 // SPDX-License-Identifier: Apache-2.0
-// The store of irradiance records: insertion with clamping, and interpolation. Knows no scene and no rays.
+// Irradiance records: what each says where it is, and what all of them say at a point.
 #ifndef SHEEN_CACHE_IRRADIANCE_CACHE_H
 #define SHEEN_CACHE_IRRADIANCE_CACHE_H
 
-#include "cache/octree.h"
-#include "cache/record.h"
+#include "cache/store.h"
 
-/** Records in the order of insertion. Readers may run in parallel while nobody inserts. */
-typedef struct SheenIrradianceCache {
-    float accuracy;         // a: a record is used where w > 1/a
-    bool neighbor_clamping; // krivanek2006-making-caching-practical sec. 5.2
-    SheenOctree *octree;
-    IrradianceRecord *records;
-    uint32_t n_records, capacity;
-} SheenIrradianceCache;
+/** The light of one record. */
+typedef struct IrradianceLight {
+    Rgb E;               // irradiance, W/m^2
+    Vec3 translation[3]; // gradient of E for a shift of p, per channel, W/m^3; in the plane of n
+    Vec3 rotation[3];    // gradient of E for a rotation n x n', per channel
+} IrradianceLight;
 
 /**
- * @param accuracy  a in (0, 1]; small is accurate and slow
- * @param bounds    where records and shading points will be
+ * Irradiance at a shift d and a turn w = n x n' from where the light holds, first order in both; never negative.
+ * Source: ward1992-gradients eq. (7); the sign of the rotation as in gather/estimate.h.
  */
+static inline Rgb irradiance_extrapolate(const IrradianceLight *light, Vec3 d, Vec3 w)
+{
+    const Vec3 *t = light->translation, *r = light->rotation;
+    return rgb(maxf(0.0f, light->E.r + v3_dot(d, t[0]) + v3_dot(w, r[0])),
+               maxf(0.0f, light->E.g + v3_dot(d, t[1]) + v3_dot(w, r[1])),
+               maxf(0.0f, light->E.b + v3_dot(d, t[2]) + v3_dot(w, r[2])));
+}
+
+/** Irradiance that a record predicts at (p, n). */
+static inline Rgb irradiance_predict(const Record *r, const IrradianceLight *light, Vec3 p, Vec3 n)
+{
+    return irradiance_extrapolate(light, v3_sub(p, r->p), v3_cross(r->n, n));
+}
+
+/**
+ * Weighted mean of the contributors' predictions: sum w_i E_i(p, n) / sum w_i with w_i = w - 1/a.
+ * @param light  [records] of the store
+ * @return irradiance, W/m^2; black when `c` is empty
+ * Source: ward1992-gradients eq. (8) with the weight of tabellion2004-gi-film, which has no seams.
+ */
+Rgb sheen_irradiance_interpolate(const SheenRecordStore *store, const IrradianceLight light[], const Contributors *c,
+                                 Vec3 p, Vec3 n);
+
+/** Records with their light. */
+typedef struct SheenIrradianceCache {
+    SheenRecordStore *store;
+    IrradianceLight *light; // [store->n]
+    uint32_t capacity;
+} SheenIrradianceCache;
+
+/** As sheen_store_create. */
 SHEEN_NODISCARD SheenStatus sheen_irradiance_cache_create(float accuracy, bool neighbor_clamping, const Bounds *bounds,
                                                           SheenIrradianceCache **out);
 void sheen_irradiance_cache_destroy(SheenIrradianceCache **cache);
 
-/**
- * Stores a copy of the record. With neighbor clamping its radius first becomes at most R_j + distance of each record j,
- * and then those records' radii at most R + distance, none below its own R_min. Slivers clamp nobody.
- * Source: krivanek2006-making-caching-practical sec. 5.2, with radii clamped to their minimum first: a contact's tiny
- * unclamped radius would otherwise push all its neighbors to their minimum too.
- */
-SHEEN_NODISCARD SheenStatus sheen_irradiance_cache_insert(SheenIrradianceCache *cache, const IrradianceRecord *record);
-
-/** The records that serve a point. */
-enum { SHEEN_CONTRIBUTORS_MAX = 32 };
-typedef struct Contributors {
-    unsigned n;
-    uint32_t record[SHEEN_CONTRIBUTORS_MAX];
-    float weight[SHEEN_CONTRIBUTORS_MAX]; // w - 1/a > 0: continuous where a record's influence ends
-    float weight_sum;                     // 0 when no record covers the point
-    unsigned cover;                       // two or more where the point needs no further record
-} Contributors;
-
-/**
- * Finds the records with w > 1/a at (p, n), none in front of which the point lies. More than SHEEN_CONTRIBUTORS_MAX:
- * the first found are kept. Thread-safe.
- * @param n      unit normal of the lit side
- * @param slack  metres that p may lie off its surface: added to the tolerance of the test for points in front
- */
-void sheen_irradiance_cache_find(const SheenIrradianceCache *cache, Vec3 p, Vec3 n, float slack, Contributors *out);
-
-/**
- * The radius R that a record at p may be expected to have: the least R_j + distance over the records that lie near it
- * in the octree, with their radii as inserted. INFINITY where there is none. Thread-safe. Source:
- * krivanek2006-making-caching-practical sec. 5.2, its inequality used as a guess.
- */
-float sheen_irradiance_cache_expect_radius(const SheenIrradianceCache *cache, Vec3 p);
-
-/**
- * Weighted mean of the contributors' extrapolations: sum w_i E_i(p, n) / sum w_i with w_i = w - 1/a.
- * @return irradiance, W/m^2; black when `c` is empty
- * Source: ward1992-gradients eq. (8) with the weight of tabellion2004-gi-film, which has no seams.
- */
-Rgb sheen_irradiance_cache_interpolate(const SheenIrradianceCache *cache, const Contributors *c, Vec3 p, Vec3 n);
+/** As sheen_store_insert; stores a copy of the light too. */
+SHEEN_NODISCARD SheenStatus sheen_irradiance_cache_insert(SheenIrradianceCache *cache, const Record *record,
+                                                          const IrradianceLight *light);
 
 uint64_t sheen_irradiance_cache_bytes(const SheenIrradianceCache *cache);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An irradiance record, where it may be used and what it says there.
+// A record of whatever light: where it was made and where it may be used.
 #ifndef SHEEN_CACHE_RECORD_H
 #define SHEEN_CACHE_RECORD_H
 
@@ -10,26 +10,23 @@
 /** The least R_sure that a record is given, in units of R_min. */
 #define SHEEN_SLIVER 0.1f
 
-typedef struct IrradianceRecord {
-    Vec3 p;              // position, world space, metres
-    Vec3 n;              // unit normal of the side that is lit
-    float R;             // clamped harmonic mean distance, metres: the record reaches a R on a plane
-    float R_min;         // the least R that later clamping may set
-    float R_sure;        // its own radius. Below R_min, R is R_min: farther out it speaks where no other record does
-    float error;         // relative standard error of E
-    Rgb E;               // irradiance, W/m^2
-    Vec3 translation[3]; // gradient of E for a shift of p, per channel, W/m^3; in the plane of n
-    Vec3 rotation[3];    // gradient of E for a rotation n x n', per channel
-} IrradianceRecord;
+typedef struct Record {
+    Vec3 p;       // position, world space, metres
+    Vec3 n;       // unit normal of the side that is lit
+    float R;      // clamped harmonic mean distance, metres: the record reaches a R on a plane
+    float R_min;  // the least R that later clamping may set
+    float R_sure; // its own radius. Below R_min, R is R_min: farther out it speaks where no other record does
+    float error;  // relative standard error of its light
+} Record;
 
 /** Whether the record's own radius is below what the picture resolves. */
-static inline bool record_is_enlarged(const IrradianceRecord *r)
+static inline bool record_is_enlarged(const Record *r)
 {
     return r->R_sure < r->R_min;
 }
 
 /** Whether it sees the world through a gap far narrower than a pixel: it knows nothing of what is around. */
-static inline bool record_is_sliver(const IrradianceRecord *r)
+static inline bool record_is_sliver(const Record *r)
 {
     return r->R_sure <= SHEEN_SLIVER * r->R_min;
 }
@@ -53,28 +50,10 @@ static inline float record_weight(float R, float d2, float cos_n)
  * @param slack  metres, added to the tolerance
  * Source: ward1988, test on d_i(P), there without tolerance.
  */
-static inline bool record_in_front(const IrradianceRecord *r, Vec3 p, Vec3 n, float a, float slack)
+static inline bool record_in_front(const Record *r, Vec3 p, Vec3 n, float a, float slack)
 {
     float d = v3_dot(v3_sub(p, r->p), v3_add(n, r->n)) * 0.5f;
     return d < -0.02f * a * r->R - slack;
-}
-
-/**
- * Irradiance at a shift d and a turn w = n x n' from where E and its gradients (per channel) hold, first order in both;
- * never negative.
- * Source: ward1992-gradients eq. (7); the sign of the rotation as in gather/estimate.h.
- */
-static inline Rgb irradiance_extrapolate(Rgb E, const Vec3 translation[3], const Vec3 rotation[3], Vec3 d, Vec3 w)
-{
-    return rgb(maxf(0.0f, E.r + v3_dot(d, translation[0]) + v3_dot(w, rotation[0])),
-               maxf(0.0f, E.g + v3_dot(d, translation[1]) + v3_dot(w, rotation[1])),
-               maxf(0.0f, E.b + v3_dot(d, translation[2]) + v3_dot(w, rotation[2])));
-}
-
-/** Irradiance that the record predicts at (p, n). */
-static inline Rgb record_extrapolate(const IrradianceRecord *r, Vec3 p, Vec3 n)
-{
-    return irradiance_extrapolate(r->E, r->translation, r->rotation, v3_sub(p, r->p), v3_cross(r->n, n));
 }
 
 #endif

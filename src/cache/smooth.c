@@ -9,17 +9,19 @@
 static const float share_of_bound = 0.5f;
 
 typedef struct Smoothing {
-    const SheenIrradianceCache *wide; // the records, with twice the reach
-    IrradianceRecord *smoothed;       // [records]
+    const SheenRecordStore *wide; // the records, with twice the reach
+    const IrradianceLight *light; // [records]
+    IrradianceLight *smoothed;    // [records]
 } Smoothing;
 
 // What a neighbor says at a record, added with a weight.
-static void add(const IrradianceRecord *from, float weight, const IrradianceRecord *at, IrradianceRecord *sum)
+static void add(const Smoothing *s, uint32_t from, float weight, const Record *at, IrradianceLight *sum)
 {
-    sum->E = rgb_mad(sum->E, weight, record_extrapolate(from, at->p, at->n));
+    const IrradianceLight *light = &s->light[from];
+    sum->E = rgb_mad(sum->E, weight, irradiance_predict(&s->wide->records[from], light, at->p, at->n));
     for (int i = 0; i < 3; ++i) {
-        sum->translation[i] = v3_mad(sum->translation[i], weight, from->translation[i]);
-        sum->rotation[i] = v3_mad(sum->rotation[i], weight, from->rotation[i]);
+        sum->translation[i] = v3_mad(sum->translation[i], weight, light->translation[i]);
+        sum->rotation[i] = v3_mad(sum->rotation[i], weight, light->rotation[i]);
     }
 }
 
@@ -30,10 +32,11 @@ static Vec3 in_plane(Vec3 g, Vec3 n)
 }
 
 // By how much two records differ more than noise explains; 1 when it does. On two sides of a wall they do.
-static float contrast(const IrradianceRecord *own, const IrradianceRecord *other)
+static float contrast(const Smoothing *s, uint32_t own, uint32_t other)
 {
     const float sigmas = 4.0f;
-    float a = rgb_luminance(own->E), b = rgb_luminance(other->E), noise = maxf(own->error, other->error);
+    float a = rgb_luminance(s->light[own].E), b = rgb_luminance(s->light[other].E);
+    float noise = maxf(s->wide->records[own].error, s->wide->records[other].error);
     return maxf(1.0f, maxf(a, b) / (maxf(minf(a, b), 1e-20f) * (1.0f + sigmas * noise)));
 }
 
@@ -41,53 +44,56 @@ static void smooth_task(void *user, size_t item, unsigned worker)
 {
     (void)worker;
     Smoothing *s = user;
-    const IrradianceRecord *own = &s->wide->records[item];
+    uint32_t own = (uint32_t)item;
+    const Record *at = &s->wide->records[own];
     Contributors near;
-    sheen_irradiance_cache_find(s->wide, own->p, own->n, 0.0f, &near);
-    IrradianceRecord sum = {.E = rgb_gray(0.0f)};
+    sheen_store_find(s->wide, at->p, at->n, 0.0f, &near);
+    IrradianceLight sum = {.E = rgb_gray(0.0f)};
     float weights = 0.0f;
     for (unsigned i = 0; i < near.n; ++i) {
-        const IrradianceRecord *r = &s->wide->records[near.record[i]];
-        Vec3 d = v3_sub(own->p, r->p);
+        uint32_t other = near.record[i];
+        const Record *r = &s->wide->records[other];
+        Vec3 d = v3_sub(at->p, r->p);
         float w =
-            r == own ? INFINITY : record_weight(minf(r->R_sure, own->R_sure), v3_length2(d), v3_dot(own->n, r->n));
-        float variance = (sqrf(r->error) + sqrf(share_of_bound / w)) * sqrf(contrast(own, r));
+            other == own ? INFINITY : record_weight(minf(r->R_sure, at->R_sure), v3_length2(d), v3_dot(at->n, r->n));
+        float variance = (sqrf(r->error) + sqrf(share_of_bound / w)) * sqrf(contrast(s, own, other));
         if (!(variance > 0.0f)) continue;
-        add(r, 1.0f / variance, own, &sum);
+        add(s, other, 1.0f / variance, at, &sum);
         weights += 1.0f / variance;
     }
-    if (!(own->error > 0.0f) || !(weights > 0.0f) || !isfinite(weights)) return;
-    IrradianceRecord *out = &s->smoothed[item];
+    if (!(at->error > 0.0f) || !(weights > 0.0f) || !isfinite(weights)) return;
+    IrradianceLight *out = &s->smoothed[own];
     out->E = rgb_scale(sum.E, 1.0f / weights);
     for (int i = 0; i < 3; ++i) {
-        out->translation[i] = v3_scale(in_plane(sum.translation[i], own->n), 1.0f / weights);
-        out->rotation[i] = v3_scale(in_plane(sum.rotation[i], own->n), 1.0f / weights);
+        out->translation[i] = v3_scale(in_plane(sum.translation[i], at->n), 1.0f / weights);
+        out->rotation[i] = v3_scale(in_plane(sum.rotation[i], at->n), 1.0f / weights);
     }
 }
 
-static SheenStatus widen(const SheenIrradianceCache *cache, const Bounds *bounds, SheenIrradianceCache **wide)
+static SheenStatus widen(const SheenRecordStore *store, const Bounds *bounds, SheenRecordStore **wide)
 {
-    SheenStatus status = sheen_irradiance_cache_create(2.0f * cache->accuracy, false, bounds, wide);
-    for (uint32_t i = 0; i < cache->n_records && status == SHEEN_OK; ++i)
-        status = sheen_irradiance_cache_insert(*wide, &cache->records[i]);
+    SheenStatus status = sheen_store_create(2.0f * store->accuracy, false, bounds, wide);
+    for (uint32_t i = 0; i < store->n && status == SHEEN_OK; ++i)
+        status = sheen_store_insert(*wide, &store->records[i]);
     return status;
 }
 
 SheenStatus sheen_irradiance_cache_smooth(SheenIrradianceCache *cache, const Bounds *bounds, SheenPool *pool,
                                           const atomic_bool *cancel)
 {
-    if (cache->n_records == 0) return SHEEN_OK;
-    size_t bytes = cache->n_records * sizeof *cache->records;
-    Smoothing s = {.smoothed = malloc(bytes)};
-    SheenIrradianceCache *wide = NULL;
-    SheenStatus status = s.smoothed ? widen(cache, bounds, &wide) : SHEEN_ERR_NOMEM;
+    uint32_t n = cache->store->n;
+    if (n == 0) return SHEEN_OK;
+    size_t bytes = n * sizeof *cache->light;
+    SheenRecordStore *wide = NULL;
+    Smoothing s = {.light = cache->light, .smoothed = malloc(bytes)};
+    SheenStatus status = s.smoothed ? widen(cache->store, bounds, &wide) : SHEEN_ERR_NOMEM;
     if (status == SHEEN_OK) {
-        memcpy(s.smoothed, cache->records, bytes);
+        memcpy(s.smoothed, cache->light, bytes);
         s.wide = wide;
-        if (!sheen_pool_run(pool, cache->n_records, smooth_task, &s, cancel)) status = SHEEN_ERR_CANCELLED;
+        if (!sheen_pool_run(pool, n, smooth_task, &s, cancel)) status = SHEEN_ERR_CANCELLED;
     }
-    if (status == SHEEN_OK) memcpy(cache->records, s.smoothed, bytes);
+    if (status == SHEEN_OK) memcpy(cache->light, s.smoothed, bytes);
     free(s.smoothed);
-    sheen_irradiance_cache_destroy(&wide);
+    sheen_store_destroy(&wide);
     return status;
 }

@@ -36,22 +36,16 @@ typedef struct DeepCell {
                        // gather's own point for a guess
 } DeepCell;
 
-/** The solution of one bounce count at one record. */
-typedef struct DeepLight {
-    Rgb E;
-    Vec3 translation[3], rotation[3];
-} DeepLight;
-
 struct SheenDeep {
     const SheenWork *work;
     unsigned bounces;
-    float scale;                         // metres
-    float reach_min;                     // metres
-    SheenIrradianceCache *cache;         // where the records are; their light is in `light`
-    DiffusePoint *points;                // [records]
-    DeepCell *cells;                     // [records][strata], freed after the solution
-    DeepLight *light[SHEEN_DEEP_LEVELS]; // light[i][record] holds k = bounces - i
-    Rgb mean[SHEEN_DEEP_LEVELS];         // over all records: a guess where there is none
+    float scale;     // metres
+    float reach_min; // metres
+    SheenRecordStore *store;
+    DiffusePoint *points;                      // [records]
+    DeepCell *cells;                           // [records][strata], freed after the solution
+    IrradianceLight *light[SHEEN_DEEP_LEVELS]; // light[i][record] holds k = bounces - i
+    Rgb mean[SHEEN_DEEP_LEVELS];               // over all records: a guess where there is none
     HotSpots hot;
     SheenMemo *memo;
     uint32_t point_capacity, gathered;
@@ -90,7 +84,7 @@ static float reach_of(const SheenDeep *d, float R)
 
 static bool store_point(SheenDeep *d, const DiffusePoint *p, float R)
 {
-    uint32_t i = d->cache->n_records;
+    uint32_t i = d->store->n;
     if (i == d->point_capacity) {
         uint32_t capacity = i ? 2 * i : 1024;
         DiffusePoint *grown = realloc(d->points, capacity * sizeof *grown);
@@ -100,19 +94,19 @@ static bool store_point(SheenDeep *d, const DiffusePoint *p, float R)
     }
     d->points[i] = *p;
     float clamped = reach_of(d, R) / deep_accuracy;
-    IrradianceRecord record = {.p = p->p, .n = p->n, .R = clamped, .R_min = clamped, .R_sure = clamped};
-    return sheen_irradiance_cache_insert(d->cache, &record) == SHEEN_OK;
+    Record record = {.p = p->p, .n = p->n, .R = clamped, .R_min = clamped, .R_sure = clamped};
+    return sheen_store_insert(d->store, &record) == SHEEN_OK;
 }
 
-static SheenStatus create_cache(SheenDeep *d)
+static SheenStatus create_store(SheenDeep *d)
 {
-    return sheen_irradiance_cache_create(deep_accuracy, false, &d->work->scene->bounds, &d->cache);
+    return sheen_store_create(deep_accuracy, false, &d->work->scene->bounds, &d->store);
 }
 
 static bool covered(const SheenDeep *d, Vec3 p, Vec3 n)
 {
     Contributors c;
-    sheen_irradiance_cache_find(d->cache, p, n, 0.0f, &c);
+    sheen_store_find(d->store, p, n, 0.0f, &c);
     return c.n > 0;
 }
 
@@ -120,10 +114,10 @@ static bool covered(const SheenDeep *d, Vec3 p, Vec3 n)
 // turn.
 static SheenStatus place(SheenDeep *d, Queue *q, uint32_t most, Hemisphere *probe, SheenStats *stats)
 {
-    while (q->head < q->tail && d->cache->n_records < most) {
+    while (q->head < q->tail && d->store->n < most) {
         DiffusePoint p = q->items[q->head++];
         if (covered(d, p.p, p.n)) continue;
-        sheen_hemisphere_begin(&p, point_key(d, d->cache->n_records, 0), probe);
+        sheen_hemisphere_begin(&p, point_key(d, d->store->n, 0), probe);
         sheen_hemisphere_trace(d->work, &p, 1, probe, stats);
         if (!store_point(d, &p, sheen_harmonic_mean((unsigned)probe->cells, probe->distance))) return SHEEN_ERR_NOMEM;
         size_t step = probe->n_vertices / FOLLOWED + 1;
@@ -196,7 +190,7 @@ static void link_task(void *user, size_t item, unsigned worker)
         DeepCell *c = &cells[i];
         if (rgb_is_black(c->weight) || c->share[0] > 0.0f) continue;
         Contributors found;
-        sheen_irradiance_cache_find(d->cache, c->p, c->n, 0.0f, &found);
+        sheen_store_find(d->store, c->p, c->n, 0.0f, &found);
         float sum = 0.0f;
         for (int slot = 0; slot < KEPT; ++slot) {
             unsigned best = found.n;
@@ -229,7 +223,7 @@ static SheenStatus queue_uncovered(const SheenDeep *d, uint32_t first, Queue *q)
 
 static SheenStatus gather_new(SheenDeep *d, DeepTask *task)
 {
-    uint32_t n = d->cache->n_records;
+    uint32_t n = d->store->n;
     DeepCell *grown = realloc(d->cells, (size_t)n * strata_count(deep_strata) * sizeof *grown);
     if (!grown) return SHEEN_ERR_NOMEM;
     d->cells = grown;
@@ -251,9 +245,9 @@ static SheenStatus place_first(SheenDeep *d, const Queue *seeds, Queue *q, Hemis
         for (size_t i = 0; i < seeds->tail; ++i)
             if (!queue_push(q, &seeds->items[i])) return SHEEN_ERR_NOMEM;
         SheenStatus status = place(d, q, BUDGET, probe, stats);
-        if (status != SHEEN_OK || d->cache->n_records < BUDGET) return status;
-        sheen_irradiance_cache_destroy(&d->cache);
-        status = create_cache(d);
+        if (status != SHEEN_OK || d->store->n < BUDGET) return status;
+        sheen_store_destroy(&d->store);
+        status = create_store(d);
         if (status != SHEEN_OK) return status;
         d->reach_min *= growth;
     }
@@ -265,9 +259,9 @@ static SheenStatus place_and_gather(SheenDeep *d, const Queue *seeds, DeepTask *
     Queue queue = {0};
     if (!sheen_hemisphere_reserve(&probe, sheen_strata_cosine(PROBES))) return SHEEN_ERR_NOMEM;
     SheenStatus status = place_first(d, seeds, &queue, &probe, stats);
-    for (int round = 0; round < ROUNDS_MAX && status == SHEEN_OK && d->cache->n_records > d->gathered; ++round) {
+    for (int round = 0; round < ROUNDS_MAX && status == SHEEN_OK && d->store->n > d->gathered; ++round) {
         uint32_t first = d->gathered;
-        progress_report(d->work->progress, "deep light", (double)round / ROUNDS_MAX, d->cache->n_records);
+        progress_report(d->work->progress, "deep light", (double)round / ROUNDS_MAX, d->store->n);
         status = gather_new(d, task);
         if (status != SHEEN_OK || round + 1 == ROUNDS_MAX) break;
         status = queue_uncovered(d, first, &queue);
@@ -305,7 +299,7 @@ static void sweep_task(void *user, size_t item, unsigned worker)
     t->now[item] = e.E;
     unsigned level = d->bounces - t->k;
     if (level >= SHEEN_DEEP_LEVELS) return;
-    DeepLight *light = &d->light[level][item];
+    IrradianceLight *light = &d->light[level][item];
     Frame frame = frame_from_normal(d->points[item].n);
     light->E = e.E;
     estimate_world_gradient(&frame, e.translation, light->translation);
@@ -348,7 +342,7 @@ static SheenStatus solve(SheenDeep *d, DeepTask *task)
     Rgb *E[2] = {calloc(n + 1, sizeof(Rgb)), calloc(n + 1, sizeof(Rgb))};
     SheenStatus status = E[0] && E[1] ? SHEEN_OK : SHEEN_ERR_NOMEM;
     for (int i = 0; i < SHEEN_DEEP_LEVELS; ++i) {
-        d->light[i] = calloc(n + 1, sizeof(DeepLight));
+        d->light[i] = calloc(n + 1, sizeof(IrradianceLight));
         if (!d->light[i]) status = SHEEN_ERR_NOMEM;
     }
     for (unsigned k = 0; k <= d->bounces && status == SHEEN_OK; ++k) {
@@ -419,7 +413,7 @@ SheenStatus sheen_deep_create(const SheenWork *work, const DiffusePoint seeds[],
     DeepTask task = {
         .deep = d, .scratch = calloc(workers, sizeof(Hemisphere)), .stats = calloc(workers, sizeof(SheenStats))};
     Queue seed_hits = {0};
-    SheenStatus status = create_cache(d);
+    SheenStatus status = create_store(d);
     if (status == SHEEN_OK) status = sheen_memo_create(&d->memo);
     if (!task.scratch || !task.stats) status = SHEEN_ERR_NOMEM;
     for (unsigned i = 0; i < workers && status == SHEEN_OK; ++i)
@@ -445,7 +439,7 @@ void sheen_deep_destroy(SheenDeep **deep)
 {
     SheenDeep *d = deep ? *deep : NULL;
     if (!d) return;
-    sheen_irradiance_cache_destroy(&d->cache);
+    sheen_store_destroy(&d->store);
     sheen_memo_destroy(&d->memo);
     for (int i = 0; i < SHEEN_DEEP_LEVELS; ++i) free(d->light[i]);
     free(d->points);
@@ -460,16 +454,8 @@ void sheen_deep_destroy(SheenDeep **deep)
 static bool interpolate(const SheenDeep *d, Vec3 p, Vec3 n, float slack, int level, Rgb *E)
 {
     Contributors c;
-    sheen_irradiance_cache_find(d->cache, p, n, slack, &c);
-    Rgb sum = rgb_gray(0.0f);
-    for (unsigned i = 0; i < c.n; ++i) {
-        const IrradianceRecord *r = &d->cache->records[c.record[i]];
-        const DeepLight *light = &d->light[level][c.record[i]];
-        Rgb there =
-            irradiance_extrapolate(light->E, light->translation, light->rotation, v3_sub(p, r->p), v3_cross(r->n, n));
-        sum = rgb_mad(sum, c.weight[i], there);
-    }
-    *E = c.n ? rgb_scale(sum, 1.0f / c.weight_sum) : sum;
+    sheen_store_find(d->store, p, n, slack, &c);
+    *E = sheen_irradiance_interpolate(d->store, d->light[level], &c, p, n);
     return c.n > 0;
 }
 
@@ -511,5 +497,5 @@ const HotSpots *sheen_deep_hot_spots(const SheenDeep *d)
 
 uint32_t sheen_deep_records(const SheenDeep *d)
 {
-    return d->cache->n_records;
+    return d->store->n;
 }

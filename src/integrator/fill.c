@@ -131,7 +131,8 @@ static void gather_light(const SheenFill *f, const DiffusePoint *p, float R_min,
 
 // Radius from the estimate: harmonic mean, bounded by the gradient, then by the pixel. Source:
 // krivanek2006-making-caching-practical eq. (2), on luminance, for the second.
-static void set_radius(const SheenOptions *o, const IrradianceEstimate *e, float footprint, IrradianceRecord *r)
+static void set_radius(const SheenOptions *o, const IrradianceEstimate *e, float footprint, Record *r,
+                       IrradianceLight *light)
 {
     float R_max = reach_max_px * footprint / o->accuracy;
     r->R_min = least_radius(o, footprint);
@@ -145,11 +146,11 @@ static void set_radius(const SheenOptions *o, const IrradianceEstimate *e, float
     // Where the pixel allows no smaller radius the gradient would overshoot: it is scaled down by as much.
     if (!(R < r->R_min)) return;
     float scale = maxf(R, 0.0f) / r->R_min;
-    for (int i = 0; i < 3; ++i) r->translation[i] = v3_scale(r->translation[i], scale);
+    for (int i = 0; i < 3; ++i) light->translation[i] = v3_scale(light->translation[i], scale);
 }
 
 static void make_record(const SheenFill *f, const ShadingPoint *p, uint32_t key, Hemisphere *h, SheenStats *stats,
-                        IrradianceRecord *r)
+                        Record *r, IrradianceLight *light)
 {
     gather_light(f, &p->point, least_radius(&f->work->options, p->footprint), key, h, stats);
     for (size_t i = 0; i < h->cells; ++i)
@@ -159,12 +160,13 @@ static void make_record(const SheenFill *f, const ShadingPoint *p, uint32_t key,
         }
     IrradianceEstimate e;
     sheen_estimate_irradiance(h->strata, h->directions, h->L, h->distance, &e);
-    *r = (IrradianceRecord){.p = p->point.p, .n = p->point.n, .error = h->error, .E = e.E};
+    *r = (Record){.p = p->point.p, .n = p->point.n, .error = h->error};
+    *light = (IrradianceLight){.E = e.E};
     if (f->work->options.gradients == SHEEN_GRADIENTS_STRATIFIED) {
-        estimate_world_gradient(&h->frame, e.translation, r->translation);
-        estimate_world_gradient(&h->frame, e.rotation, r->rotation);
+        estimate_world_gradient(&h->frame, e.translation, light->translation);
+        estimate_world_gradient(&h->frame, e.rotation, light->rotation);
     }
-    set_radius(&f->work->options, &e, p->footprint, r);
+    set_radius(&f->work->options, &e, p->footprint, r, light);
 }
 
 // ---- waves ------------------------------------------------------------------------------------------------------
@@ -181,8 +183,9 @@ typedef struct Waves {
     float *spacing;         // [n_open] distance within which one record of the wave is enough
     uint32_t *accepted;     // the wave's new records
     size_t n_accepted;
-    IrradianceRecord *records; // [n_accepted]
-    uint32_t made;             // records before the wave, for keys and progress
+    Record *records;        // [n_accepted]
+    IrradianceLight *light; // [n_accepted]
+    uint32_t made;          // records before the wave, for keys and progress
 } Waves;
 
 static void cover_task(void *user, size_t item, unsigned worker)
@@ -194,11 +197,11 @@ static void cover_task(void *user, size_t item, unsigned worker)
     for (size_t i = item * COVER_BLOCK; i < end; ++i) {
         const ShadingPoint *p = &w->points[w->open[i]];
         Contributors c;
-        sheen_irradiance_cache_find(w->fill->cache, p->point.p, p->point.n, 0.0f, &c);
+        sheen_store_find(w->fill->cache->store, p->point.p, p->point.n, 0.0f, &c);
         w->covered[i] = c.cover > 1 || w->made_at[w->open[i]];
         if (w->covered[i]) continue;
         float most = reach_max_px * p->footprint;
-        float radius = sheen_irradiance_cache_expect_radius(w->fill->cache, p->point.p);
+        float radius = sheen_store_expect_radius(w->fill->cache->store, p->point.p);
         w->spacing[i] = isinf(radius) ? 0.5f * most : clampf(a * radius, reach_min_px * p->footprint, most);
     }
 }
@@ -208,7 +211,8 @@ static void gather_task(void *user, size_t item, unsigned worker)
     Waves *w = user;
     const SheenFill *f = w->fill;
     uint32_t key = hash_combine(f->work->options.seed ^ 0x9a7eu, w->made + (uint32_t)item);
-    make_record(f, &w->points[w->accepted[item]], key, &f->scratch[worker], &f->stats[worker], &w->records[item]);
+    make_record(f, &w->points[w->accepted[item]], key, &f->scratch[worker], &f->stats[worker], &w->records[item],
+                &w->light[item]);
     if (worker == 0) {
         // Most of the points that a wave finds open it covers.
         double before = 1.0 - (double)w->n_open / (double)w->n, wave = (double)item / (double)w->n_accepted;
@@ -251,7 +255,7 @@ static SheenStatus choose(Waves *w)
 static SheenStatus insert_wave(Waves *w)
 {
     for (size_t i = 0; i < w->n_accepted; ++i) {
-        SheenStatus status = sheen_irradiance_cache_insert(w->fill->cache, &w->records[i]);
+        SheenStatus status = sheen_irradiance_cache_insert(w->fill->cache, &w->records[i], &w->light[i]);
         if (status != SHEEN_OK) return status;
         w->made_at[w->accepted[i]] = 1;
     }
@@ -275,15 +279,17 @@ SheenStatus sheen_fill_run(SheenFill *f, const ShadingPoint points[], size_t n, 
 {
     if (n == 0) return SHEEN_OK;
     if (n > UINT32_MAX) return SHEEN_ERR_NOMEM;
-    Waves w = {.fill = f, .points = points, .n = n, .made = f->cache->n_records};
+    Waves w = {.fill = f, .points = points, .n = n, .made = f->cache->store->n};
     w.open = malloc(n * sizeof *w.open);
     w.covered = malloc(n);
     w.made_at = calloc(n, 1);
     w.spacing = malloc(n * sizeof *w.spacing);
     w.accepted = malloc(n * sizeof *w.accepted);
     w.records = malloc(n * sizeof *w.records);
-    SheenStatus status =
-        w.open && w.covered && w.made_at && w.spacing && w.accepted && w.records ? SHEEN_OK : SHEEN_ERR_NOMEM;
+    w.light = malloc(n * sizeof *w.light);
+    SheenStatus status = w.open && w.covered && w.made_at && w.spacing && w.accepted && w.records && w.light
+                             ? SHEEN_OK
+                             : SHEEN_ERR_NOMEM;
     if (status == SHEEN_OK) order_points(&w, n, f->work->width);
     do {
         if (status == SHEEN_OK) status = run_wave(&w);
@@ -299,5 +305,6 @@ SheenStatus sheen_fill_run(SheenFill *f, const ShadingPoint points[], size_t n, 
     free(w.spacing);
     free(w.accepted);
     free(w.records);
+    free(w.light);
     return status;
 }

@@ -165,7 +165,7 @@ SheenStatus sheen_irradiance_render(const SheenWork *work, SheenFilm *film, Shee
     }
     if (status == SHEEN_OK) status = shade_picture(work, cache, fill, film, stats);
     if (cache) {
-        stats->records = cache->n_records;
+        stats->records = cache->store->n;
         stats->cache_bytes = sheen_irradiance_cache_bytes(cache);
     }
     if (deep) stats->deep_records = sheen_deep_records(deep);

@@ -135,12 +135,12 @@ static void add_cache_layers(const SheenWork *work, const SheenIrradianceCache *
     float error = 0.0f;
     bool dot = false;
     for (unsigned i = 0; i < c->n; ++i) {
-        error += c->weight[i] / (c->weight[i] + 1.0f / cache->accuracy);
-        Vec3 d = v3_sub(p->point.p, cache->records[c->record[i]].p);
+        error += c->weight[i] / (c->weight[i] + 1.0f / cache->store->accuracy);
+        Vec3 d = v3_sub(p->point.p, cache->store->records[c->record[i]].p);
         dot = dot || v3_length2(d) < sqrf(1.5f * p->footprint);
     }
     film_add(film, SHEEN_AOV_COVERAGE, x, y, rgb_gray((float)c->n));
-    film_add(film, SHEEN_AOV_ACCURACY, x, y, rgb_gray(cache->accuracy));
+    film_add(film, SHEEN_AOV_ACCURACY, x, y, rgb_gray(cache->store->accuracy));
     film_add(film, SHEEN_AOV_ERROR, x, y, rgb_gray(error / c->weight_sum));
     if (dot) film_add(film, SHEEN_AOV_RECORDS, x, y, rgb_gray(1.0f));
 }
@@ -149,9 +149,9 @@ static bool indirect_light(const SheenWork *work, const SheenIrradianceCache *ca
                            Picture *picture, SheenStats *stats)
 {
     Contributors c;
-    sheen_irradiance_cache_find(cache, p->point.p, p->point.n, 0.0f, &c);
+    sheen_store_find(cache->store, p->point.p, p->point.n, 0.0f, &c);
     if (c.n == 0) return false;
-    Rgb E = sheen_irradiance_cache_interpolate(cache, &c, p->point.p, p->point.n);
+    Rgb E = sheen_irradiance_interpolate(cache->store, cache->light, &c, p->point.p, p->point.n);
     add_reflected(p, E, SHEEN_AOV_INDIRECT, picture, stats);
     add_cache_layers(work, cache, p, &c, picture->film);
     return true;

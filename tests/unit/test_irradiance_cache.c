@@ -41,13 +41,26 @@ static SheenIrradianceCache *cache_begin(bool clamping)
     assert_int_equal(sheen_irradiance_cache_create(A, clamping, &box, &c), SHEEN_OK);
     return c;
 }
-static void insert(SheenIrradianceCache *c, const IrradianceRecord *r)
+/** A record and its light. */
+typedef struct Lit {
+    Record at;
+    IrradianceLight light;
+} Lit;
+static void insert(SheenIrradianceCache *c, const Lit *r)
 {
-    assert_int_equal(sheen_irradiance_cache_insert(c, r), SHEEN_OK);
+    assert_int_equal(sheen_irradiance_cache_insert(c, &r->at, &r->light), SHEEN_OK);
 }
-static IrradianceRecord flat_record(Vec3 p, Vec3 n, float R, float E)
+static Lit flat_record(Vec3 p, Vec3 n, float R, float E)
 {
-    return (IrradianceRecord){.p = p, .n = n, .R = R, .R_min = 0.0f, .R_sure = R, .E = rgb_gray(E)};
+    return (Lit){{.p = p, .n = n, .R = R, .R_min = 0.0f, .R_sure = R}, {.E = rgb_gray(E)}};
+}
+static Rgb predict(const Lit *r, Vec3 p, Vec3 n)
+{
+    return irradiance_predict(&r->at, &r->light, p, n);
+}
+static Rgb interpolate(const SheenIrradianceCache *c, const Contributors *found, Vec3 p, Vec3 n)
+{
+    return sheen_irradiance_interpolate(c->store, c->light, found, p, n);
 }
 
 // ---- one record -------------------------------------------------------------------------------------------------
@@ -74,14 +87,15 @@ static void test_records_in_front(void **state)
     for (uint32_t i = 0; i < 2000; ++i) {
         Vec3 n = random_normal(i), q = v3_scale(random_point(i), 30.0f);
         Frame f = frame_from_normal(n);
-        IrradianceRecord r = flat_record(q, n, 1.0f, 1.0f);
+        Lit r = flat_record(q, n, 1.0f, 1.0f);
         float x = A * (random_unit(i, 6) - 0.5f), y = A * (random_unit(i, 7) - 0.5f);
         Vec3 p = v3_mad(v3_mad(q, x, f.t), y, f.b);
-        assert_false(record_in_front(&r, p, n, A, 0.0f));
-        assert_true(record_in_front(&r, v3_mad(p, -0.05f * A, n), n, A, 0.0f));
-        assert_false(record_in_front(&r, v3_mad(p, -0.05f * A, n), n, A, 0.05f * A)); // the slack adds to the tolerance
-        assert_true(record_in_front(&r, v3_mad(p, -0.1f * A, n), n, A, 0.05f * A));
-        assert_false(record_in_front(&r, v3_mad(p, 0.05f * A, n), n, A, 0.0f));
+        assert_false(record_in_front(&r.at, p, n, A, 0.0f));
+        assert_true(record_in_front(&r.at, v3_mad(p, -0.05f * A, n), n, A, 0.0f));
+        assert_false(
+            record_in_front(&r.at, v3_mad(p, -0.05f * A, n), n, A, 0.05f * A)); // the slack adds to the tolerance
+        assert_true(record_in_front(&r.at, v3_mad(p, -0.1f * A, n), n, A, 0.05f * A));
+        assert_false(record_in_front(&r.at, v3_mad(p, 0.05f * A, n), n, A, 0.0f));
     }
 }
 
@@ -92,17 +106,18 @@ static void test_translation_is_exact_for_linear_fields(void **state)
     for (uint32_t i = 0; i < 1000; ++i) {
         Vec3 n = random_normal(i), q = random_point(i);
         Frame f = frame_from_normal(n);
-        IrradianceRecord r = {.p = q, .n = n, .R = 1.0f};
+        Lit r = {.at = {.p = q, .n = n, .R = 1.0f}};
         float E[3];
         for (uint32_t c = 0; c < 3; ++c) {
-            r.translation[c] = v3_add(v3_scale(f.t, random_unit(i, 10 + c)), v3_scale(f.b, -random_unit(i, 20 + c)));
-            E[c] = 3.0f + v3_dot(r.translation[c], q);
+            r.light.translation[c] =
+                v3_add(v3_scale(f.t, random_unit(i, 10 + c)), v3_scale(f.b, -random_unit(i, 20 + c)));
+            E[c] = 3.0f + v3_dot(r.light.translation[c], q);
         }
-        r.E = rgb(E[0], E[1], E[2]);
+        r.light.E = rgb(E[0], E[1], E[2]);
         Vec3 p = v3_mad(v3_mad(q, 0.2f * random_unit(i, 6), f.t), 0.2f * random_unit(i, 7), f.b);
-        Rgb got = record_extrapolate(&r, p, n);
+        Rgb got = predict(&r, p, n);
         float value[3] = {got.r, got.g, got.b};
-        for (int c = 0; c < 3; ++c) assert_true(fabsf(value[c] - 3.0f - v3_dot(r.translation[c], p)) < 4e-6f);
+        for (int c = 0; c < 3; ++c) assert_true(fabsf(value[c] - 3.0f - v3_dot(r.light.translation[c], p)) < 4e-6f);
     }
 }
 
@@ -116,8 +131,8 @@ static void test_rotation_is_first_order(void **state)
         Vec3 n = random_normal(i), m = turned(n, 0.2f * random_unit(i, 6));
         Vec3 gradient = v3_scale(v3_cross(n, s), 2.0f * SHEEN_PI / 3.0f);
         float E = SHEEN_PI + 2.0f * SHEEN_PI / 3.0f * v3_dot(s, n);
-        IrradianceRecord r = {.n = n, .R = 1.0f, .E = rgb_gray(E), .rotation = {gradient, gradient, gradient}};
-        float exact = SHEEN_PI + 2.0f * SHEEN_PI / 3.0f * v3_dot(s, m), got = record_extrapolate(&r, r.p, m).g;
+        Lit r = {{.n = n, .R = 1.0f}, {.E = rgb_gray(E), .rotation = {gradient, gradient, gradient}}};
+        float exact = SHEEN_PI + 2.0f * SHEEN_PI / 3.0f * v3_dot(s, m), got = predict(&r, r.at.p, m).g;
         float left = 2.0f * SHEEN_PI / 3.0f * fabsf(v3_dot(s, n)) * (1.0f - v3_dot(n, m));
         assert_true(fabsf(got - exact) <= left + 4e-6f);
     }
@@ -126,29 +141,29 @@ static void test_rotation_is_first_order(void **state)
 static void test_never_negative(void **state)
 {
     (void)state;
-    IrradianceRecord r = flat_record(v3(0, 0, 0), v3(0, 0, 1), 1.0f, 1.0f);
-    r.translation[0] = v3(-100, 0, 0);
-    r.translation[1] = v3(100, 0, 0);
-    r.rotation[2] = v3(0, -100, 0);
-    Rgb E = record_extrapolate(&r, v3(0.1f, 0, 0), v3_normalize(v3(0.2f, 0, 1)));
+    Lit r = flat_record(v3(0, 0, 0), v3(0, 0, 1), 1.0f, 1.0f);
+    r.light.translation[0] = v3(-100, 0, 0);
+    r.light.translation[1] = v3(100, 0, 0);
+    r.light.rotation[2] = v3(0, -100, 0);
+    Rgb E = predict(&r, v3(0.1f, 0, 0), v3_normalize(v3(0.2f, 0, 1)));
     assert_true(E.r == 0.0f && E.b == 0.0f);
     assert_true(fabsf(E.g - 11.0f) < 1e-4f);
 }
 
 // ---- many records -----------------------------------------------------------------------------------------------
 
-static void fill_random(SheenIrradianceCache *c, uint32_t n, IrradianceRecord copy[])
+static void fill_random(SheenIrradianceCache *c, uint32_t n, Lit copy[])
 {
     for (uint32_t i = 0; i < n; ++i) {
         float R = 0.2f * expf(3.0f * random_unit(i, 8));
         copy[i] = flat_record(random_point(i), turned(v3(0, 0, 1), 0.1f * random_unit(i, 9)), R, random_unit(i, 10));
-        copy[i].R_min = R * random_unit(i, 11);
+        copy[i].at.R_min = R * random_unit(i, 11);
         insert(c, &copy[i]);
     }
 }
 
 // Whether a record serves a point, by its definition; 0 when rounding decides.
-static int serves(const IrradianceRecord *r, Vec3 p, Vec3 n)
+static int serves(const Record *r, Vec3 p, Vec3 n)
 {
     float d2 = v3_length2(v3_sub(p, r->p)), over = record_weight(r->R, d2, v3_dot(n, r->n)) - 1.0f / A;
     float height = v3_dot(v3_sub(p, r->p), v3_add(n, r->n)) * 0.5f + 0.02f * A * r->R;
@@ -159,19 +174,19 @@ static int serves(const IrradianceRecord *r, Vec3 p, Vec3 n)
 static void find_against_all(bool clamping)
 {
     enum { N = 1500 };
-    static IrradianceRecord made[N];
+    static Lit made[N];
     SheenIrradianceCache *c = cache_begin(clamping);
     fill_random(c, N, made);
     size_t found_any = 0;
     for (uint32_t i = 0; i < 2000; ++i) {
         Vec3 p = random_point(i + N), n = turned(v3(0, 0, 1), 0.1f * random_unit(i, 12));
         Contributors found;
-        sheen_irradiance_cache_find(c, p, n, 0.0f, &found);
+        sheen_store_find(c->store, p, n, 0.0f, &found);
         assert_in_range(found.n, 0, SHEEN_CONTRIBUTORS_MAX - 1); // all of them fit
         unsigned char met[N] = {0};
         float sum = 0.0f;
         for (unsigned k = 0; k < found.n; ++k) {
-            const IrradianceRecord *r = &c->records[found.record[k]];
+            const Record *r = &c->store->records[found.record[k]];
             met[found.record[k]] = 1;
             sum += found.weight[k];
             float w = record_weight(r->R, v3_length2(v3_sub(p, r->p)), v3_dot(n, r->n)) - 1.0f / A;
@@ -179,7 +194,7 @@ static void find_against_all(bool clamping)
         }
         assert_true(fabsf(sum - found.weight_sum) <= 1e-5f * sum);
         for (uint32_t j = 0; j < N; ++j) {
-            const IrradianceRecord *r = &c->records[j];
+            const Record *r = &c->store->records[j];
             int expected = serves(r, p, n);
             if (expected) assert_int_equal(met[j], expected > 0);
         }
@@ -202,27 +217,50 @@ static void test_empty_cache(void **state)
     (void)state;
     SheenIrradianceCache *c = cache_begin(false);
     Contributors found;
-    sheen_irradiance_cache_find(c, v3(0, 0, 0), v3(0, 0, 1), 0.0f, &found);
+    sheen_store_find(c->store, v3(0, 0, 0), v3(0, 0, 1), 0.0f, &found);
     assert_int_equal(found.n, 0);
     assert_true(found.weight_sum == 0.0f);
-    assert_true(rgb_is_black(sheen_irradiance_cache_interpolate(c, &found, v3(0, 0, 0), v3(0, 0, 1))));
+    assert_true(rgb_is_black(interpolate(c, &found, v3(0, 0, 0), v3(0, 0, 1))));
     sheen_irradiance_cache_destroy(&c);
     sheen_irradiance_cache_destroy(NULL);
 }
 
-// More records than a point has room for: some are left out, none is written past the end.
+// More records than a point has room for: the lightest are left out, none is written past the end.
 static void test_too_many_contributors(void **state)
 {
     (void)state;
     SheenIrradianceCache *c = cache_begin(false);
     for (uint32_t i = 0; i < 100; ++i) {
-        IrradianceRecord r = flat_record(v3(1e-4f * (float)i, 0, 0), v3(0, 0, 1), 1.0f, 2.0f);
+        Lit r = flat_record(v3(1e-4f * (float)i, 0, 0), v3(0, 0, 1), 1.0f, 2.0f);
         insert(c, &r);
     }
     Contributors found;
-    sheen_irradiance_cache_find(c, v3(0, 0, 0), v3(0, 0, 1), 0.0f, &found);
+    sheen_store_find(c->store, v3(0, 0, 0), v3(0, 0, 1), 0.0f, &found);
     assert_int_equal(found.n, SHEEN_CONTRIBUTORS_MAX);
-    assert_true(fabsf(sheen_irradiance_cache_interpolate(c, &found, v3(0, 0, 0), v3(0, 0, 1)).r - 2.0f) < 1e-5f);
+    assert_true(fabsf(interpolate(c, &found, v3(0, 0, 0), v3(0, 0, 1)).r - 2.0f) < 1e-5f);
+    sheen_irradiance_cache_destroy(&c);
+}
+
+// A small record among more large ones than there is room for, which the octree meets first: it weighs more than all of
+// them at its place, and must be there.
+static void test_small_record_among_many_large(void **state)
+{
+    (void)state;
+    SheenIrradianceCache *c = cache_begin(false);
+    for (uint32_t i = 0; i < 100; ++i) {
+        Lit large = flat_record(v3(0.05f + 1e-4f * (float)i, 0, 0), v3(0, 0, 1), 1.0f, 100.0f);
+        insert(c, &large);
+    }
+    Lit small = flat_record(v3(0, 0, 0), v3(0, 0, 1), 0.01f, 1.0f);
+    insert(c, &small);
+    Contributors found;
+    sheen_store_find(c->store, v3(0, 0, 0), v3(0, 0, 1), 0.0f, &found);
+    assert_int_equal(found.n, SHEEN_CONTRIBUTORS_MAX);
+    // 31 others weigh at most 1 / .05 - 1 / .15 = 13.3 each beside its million, and say 100 times as much: 1.04.
+    assert_true(fabsf(interpolate(c, &found, v3(0, 0, 0), v3(0, 0, 1)).r - 1.0f) < 0.05f);
+    float sum = 0.0f;
+    for (unsigned i = 0; i < found.n; ++i) sum += found.weight[i];
+    assert_true(fabsf(sum / found.weight_sum - 1.0f) < 1e-5f); // floats, of which some were taken back
     sheen_irradiance_cache_destroy(&c);
 }
 
@@ -230,23 +268,23 @@ static void test_interpolation_at_a_record(void **state)
 {
     (void)state;
     SheenIrradianceCache *c = cache_begin(false);
-    IrradianceRecord r = flat_record(v3(0, 0, 0), v3(0, 0, 1), 1.0f, 1.0f);
+    Lit r = flat_record(v3(0, 0, 0), v3(0, 0, 1), 1.0f, 1.0f);
     insert(c, &r);
     r = flat_record(v3(0.05f, 0, 0), v3(0, 0, 1), 1.0f, 3.0f);
     insert(c, &r);
     Contributors found;
     for (int i = 0; i < 2; ++i) {
-        const IrradianceRecord *at = &c->records[i];
-        sheen_irradiance_cache_find(c, at->p, at->n, 0.0f, &found);
+        const Record *at = &c->store->records[i];
+        sheen_store_find(c->store, at->p, at->n, 0.0f, &found);
         assert_int_equal(found.n, 2);
         // The other's weight is 1 / 0.05 - 1 / 0.15 against a million.
-        Rgb E = sheen_irradiance_cache_interpolate(c, &found, at->p, at->n);
-        assert_true(fabsf(E.g - at->E.g) < 1e-4f);
+        Rgb E = interpolate(c, &found, at->p, at->n);
+        assert_true(fabsf(E.g - c->light[i].E.g) < 1e-4f);
     }
     // Half way both count alike.
     Vec3 middle = v3(0.025f, 0, 0);
-    sheen_irradiance_cache_find(c, middle, r.n, 0.0f, &found);
-    assert_true(fabsf(sheen_irradiance_cache_interpolate(c, &found, middle, r.n).g - 2.0f) < 1e-4f);
+    sheen_store_find(c->store, middle, r.at.n, 0.0f, &found);
+    assert_true(fabsf(interpolate(c, &found, middle, r.at.n).g - 2.0f) < 1e-4f);
     sheen_irradiance_cache_destroy(&c);
 }
 
@@ -257,10 +295,9 @@ static void test_no_seams(void **state)
     (void)state;
     SheenIrradianceCache *c = cache_begin(false);
     Vec3 up = v3(0, 0, 1);
-    IrradianceRecord near = flat_record(v3(0, 0, 0), up, 1.0f, 1.0f),
-                     far = flat_record(v3(0.02f, 0, 0), up, 2.0f, 0.0f);
+    Lit near = flat_record(v3(0, 0, 0), up, 1.0f, 1.0f), far = flat_record(v3(0.02f, 0, 0), up, 2.0f, 0.0f);
     insert(c, &near);
-    far.n = turned(up, 0.08f);
+    far.at.n = turned(up, 0.08f);
     insert(c, &far);
     enum { STEPS = 2000 };
     for (int way = 0; way < 2; ++way) {
@@ -271,9 +308,9 @@ static void test_no_seams(void **state)
             Vec3 p = way ? v3(0, 0, 0) : v3(0.2f * t, 0, 0);
             Vec3 n = way ? turned(up, 0.25f * t) : up;
             Contributors found;
-            sheen_irradiance_cache_find(c, p, n, 0.0f, &found);
+            sheen_store_find(c->store, p, n, 0.0f, &found);
             assert_in_range(found.n, 1, 2);
-            float E = sheen_irradiance_cache_interpolate(c, &found, p, n).g;
+            float E = interpolate(c, &found, p, n).g;
             // The function falls from 1 to 0 with a slope of some 10 at most: 0.005 a step.
             assert_true(fabsf(E - before) < 0.02f);
             before = E;
@@ -290,18 +327,18 @@ static void test_clamping_keeps_the_triangle_inequality(void **state)
 {
     (void)state;
     enum { N = 600 };
-    static IrradianceRecord made[N];
+    static Lit made[N];
     SheenIrradianceCache *c = cache_begin(true);
     fill_random(c, N, made);
     size_t shrunk = 0, held = 0;
     for (uint32_t i = 0; i < N; ++i) {
-        const IrradianceRecord *r = &c->records[i];
-        assert_true(r->R >= made[i].R_min && r->R <= made[i].R);
-        shrunk += r->R < made[i].R;
-        held += r->R == made[i].R_min;
+        const Record *r = &c->store->records[i];
+        assert_true(r->R >= made[i].at.R_min && r->R <= made[i].at.R);
+        shrunk += r->R < made[i].at.R;
+        held += r->R == made[i].at.R_min;
         for (uint32_t j = 0; j < N && r->R > r->R_min; ++j) {
-            float d = v3_length(v3_sub(r->p, c->records[j].p));
-            assert_true(r->R <= (c->records[j].R + d) * 1.000001f);
+            float d = v3_length(v3_sub(r->p, c->store->records[j].p));
+            assert_true(r->R <= (c->store->records[j].R + d) * 1.000001f);
         }
     }
     assert_true(shrunk > N / 10 && held > 10);
@@ -314,12 +351,12 @@ static void test_clamping_in_either_order(void **state)
     (void)state;
     for (int order = 0; order < 2; ++order) {
         SheenIrradianceCache *c = cache_begin(true);
-        IrradianceRecord small = flat_record(v3(0, 0, 0), v3(0, 0, 1), 0.1f, 1.0f);
-        IrradianceRecord large = flat_record(v3(0.5f, 0, 0), v3(0, 0, 1), 4.0f, 1.0f);
+        Lit small = flat_record(v3(0, 0, 0), v3(0, 0, 1), 0.1f, 1.0f);
+        Lit large = flat_record(v3(0.5f, 0, 0), v3(0, 0, 1), 4.0f, 1.0f);
         insert(c, order ? &small : &large);
         insert(c, order ? &large : &small);
-        assert_true(c->records[order ? 0 : 1].R == 0.1f);
-        assert_true(fabsf(c->records[order ? 1 : 0].R - 0.6f) < 1e-6f);
+        assert_true(c->store->records[order ? 0 : 1].R == 0.1f);
+        assert_true(fabsf(c->store->records[order ? 1 : 0].R - 0.6f) < 1e-6f);
         sheen_irradiance_cache_destroy(&c);
     }
 }
@@ -328,11 +365,11 @@ static void test_without_clamping_radii_stay(void **state)
 {
     (void)state;
     enum { N = 600 };
-    static IrradianceRecord made[N];
+    static Lit made[N];
     SheenIrradianceCache *c = cache_begin(false);
     fill_random(c, N, made);
-    assert_int_equal(c->n_records, N);
-    assert_memory_equal(c->records, made, sizeof made);
+    assert_int_equal(c->store->n, N);
+    for (uint32_t i = 0; i < N; ++i) assert_memory_equal(&c->store->records[i], &made[i].at, sizeof made[i].at);
     sheen_irradiance_cache_destroy(&c);
 }
 
@@ -342,7 +379,7 @@ static void test_bytes(void **state)
     SheenIrradianceCache *c = cache_begin(false);
     uint64_t before = sheen_irradiance_cache_bytes(c);
     for (uint32_t i = 0; i < 2000; ++i) {
-        IrradianceRecord r = flat_record(random_point(i), v3(0, 0, 1), 0.3f, 1.0f);
+        Lit r = flat_record(random_point(i), v3(0, 0, 1), 0.3f, 1.0f);
         insert(c, &r);
         uint64_t now = sheen_irradiance_cache_bytes(c);
         assert_true(now >= before + sizeof r);
@@ -358,26 +395,25 @@ static void test_enlarged_record(void **state)
     (void)state;
     SheenIrradianceCache *c = cache_begin(false);
     Vec3 n = v3(0, 0, 1);
-    IrradianceRecord dark = flat_record(v3(0, 0, 0), n, 0.3f, 0.0f),
-                     open = flat_record(v3(0.35f * A, 0, 0), n, 1.0f, 1.0f);
-    dark.R_min = 0.3f;
-    dark.R_sure = 0.1f;
+    Lit dark = flat_record(v3(0, 0, 0), n, 0.3f, 0.0f), open = flat_record(v3(0.35f * A, 0, 0), n, 1.0f, 1.0f);
+    dark.at.R_min = 0.3f;
+    dark.at.R_sure = 0.1f;
     insert(c, &dark);
     Contributors found;
-    sheen_irradiance_cache_find(c, v3(-0.2f * A, 0, 0), n, 0.0f, &found);
+    sheen_store_find(c->store, v3(-0.2f * A, 0, 0), n, 0.0f, &found);
     assert_int_equal(found.n, 1);
     assert_int_equal(found.cover, 1);
     insert(c, &dark);
-    sheen_irradiance_cache_find(c, v3(-0.2f * A, 0, 0), n, 0.0f, &found);
+    sheen_store_find(c->store, v3(-0.2f * A, 0, 0), n, 0.0f, &found);
     assert_int_equal(found.cover, 2);
     insert(c, &open);
     // Between the dark record's own reach and its enlarged one the open record says what is there, to a thousandth.
-    sheen_irradiance_cache_find(c, v3(0.2f * A, 0, 0), n, 0.0f, &found);
+    sheen_store_find(c->store, v3(0.2f * A, 0, 0), n, 0.0f, &found);
     assert_int_equal(found.n, 3);
-    assert_true(sheen_irradiance_cache_interpolate(c, &found, v3(0.2f * A, 0, 0), n).g > 0.997f);
+    assert_true(interpolate(c, &found, v3(0.2f * A, 0, 0), n).g > 0.997f);
     // At the dark record it is dark.
-    sheen_irradiance_cache_find(c, v3(1e-4f * A, 0, 0), n, 0.0f, &found);
-    assert_true(sheen_irradiance_cache_interpolate(c, &found, v3(1e-4f * A, 0, 0), n).g < 0.01f);
+    sheen_store_find(c->store, v3(1e-4f * A, 0, 0), n, 0.0f, &found);
+    assert_true(interpolate(c, &found, v3(1e-4f * A, 0, 0), n).g < 0.01f);
     sheen_irradiance_cache_destroy(&c);
 }
 
@@ -389,18 +425,17 @@ static void test_slivers_clamp_nobody(void **state)
     for (int sliver = 0; sliver < 2; ++sliver) {
         SheenIrradianceCache *c = cache_begin(true);
         Vec3 n = v3(0, 0, 1);
-        IrradianceRecord open = flat_record(v3(0.1f, 0, 0), n, 1.0f, 1.0f),
-                         small = flat_record(v3(0, 0, 0), n, 0.2f, 0.0f);
-        small.R_min = 0.2f;
-        small.R_sure = sliver ? 0.02f : 0.1f;
-        open.R_min = 0.2f;
+        Lit open = flat_record(v3(0.1f, 0, 0), n, 1.0f, 1.0f), small = flat_record(v3(0, 0, 0), n, 0.2f, 0.0f);
+        small.at.R_min = 0.2f;
+        small.at.R_sure = sliver ? 0.02f : 0.1f;
+        open.at.R_min = 0.2f;
         insert(c, &open);
         insert(c, &small);
         insert(c, &open);
         // R_min of the small record plus the distance.
-        assert_true(fabsf(c->records[0].R - (sliver ? 1.0f : 0.3f)) < 1e-6f);
-        assert_true(fabsf(c->records[2].R - (sliver ? 1.0f : 0.3f)) < 1e-6f);
-        assert_true(c->records[1].R == 0.2f);
+        assert_true(fabsf(c->store->records[0].R - (sliver ? 1.0f : 0.3f)) < 1e-6f);
+        assert_true(fabsf(c->store->records[2].R - (sliver ? 1.0f : 0.3f)) < 1e-6f);
+        assert_true(c->store->records[1].R == 0.2f);
         sheen_irradiance_cache_destroy(&c);
     }
 }
@@ -416,6 +451,7 @@ int main(void)
         cmocka_unit_test(test_find),
         cmocka_unit_test(test_empty_cache),
         cmocka_unit_test(test_too_many_contributors),
+        cmocka_unit_test(test_small_record_among_many_large),
         cmocka_unit_test(test_interpolation_at_a_record),
         cmocka_unit_test(test_no_seams),
         cmocka_unit_test(test_clamping_keeps_the_triangle_inequality),

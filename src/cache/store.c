@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cache/store.h"
+
+#include <stdlib.h>
+
+// A point on a record has infinite weight; this finite one still outweighs all others.
+static const float weight_max = 1e6f;
+
+SheenStatus sheen_store_create(float accuracy, bool neighbor_clamping, const Bounds *bounds, SheenRecordStore **out)
+{
+    *out = NULL;
+    SheenRecordStore *s = calloc(1, sizeof *s);
+    if (!s) return SHEEN_ERR_NOMEM;
+    s->accuracy = accuracy;
+    s->neighbor_clamping = neighbor_clamping;
+    if (sheen_octree_create(bounds, &s->octree) != SHEEN_OK) {
+        free(s);
+        return SHEEN_ERR_NOMEM;
+    }
+    *out = s;
+    return SHEEN_OK;
+}
+
+void sheen_store_destroy(SheenRecordStore **store)
+{
+    if (!store || !*store) return;
+    sheen_octree_destroy(&(*store)->octree);
+    free((*store)->records);
+    free(*store);
+    *store = NULL;
+}
+
+// One sphere of influence that clamping visits: a record's own.
+typedef struct Clamp {
+    SheenRecordStore *store;
+    Vec3 p;
+    float R;        // first pass: search radius
+    float smallest; // out, first pass: least R_j + distance
+    float limit;    // in, second pass: neighbors shrink to limit + distance
+    bool shrink;    // second pass
+} Clamp;
+
+static void clamp_record(Clamp *c, uint32_t record)
+{
+    Record *r = &c->store->records[record];
+    float d = v3_length(v3_sub(r->p, c->p));
+    if (c->shrink)
+        r->R = maxf(r->R_min, minf(r->R, c->limit + d));
+    else if (!record_is_sliver(r))
+        c->smallest = minf(c->smallest, r->R + d);
+}
+
+// Visits all entries of the nodes near p. The first pass looks for records nearer than R: others bound nothing. The
+// second looks for records whose own R is more than their distance; below the root these have at most half a node's
+// side as reach a R. A record may be met more than once: both passes are idempotent.
+static void clamp_visit(Clamp *c, uint32_t node, Vec3 lo, float side)
+{
+    const SheenOctree *t = c->store->octree;
+    float R = node == 0 ? INFINITY : c->shrink ? 0.51f * side / c->store->accuracy : c->R;
+    if (c->p.x + R < lo.x || c->p.x - R > lo.x + side || c->p.y + R < lo.y || c->p.y - R > lo.y + side ||
+        c->p.z + R < lo.z || c->p.z - R > lo.z + side)
+        return;
+    for (uint32_t b = t->nodes[node].blocks; b; b = t->blocks[b].next)
+        for (uint32_t i = 0; i < t->blocks[b].n; ++i) clamp_record(c, t->blocks[b].record[i]);
+    float half = 0.5f * side;
+    for (unsigned o = 0; o < 8; ++o) {
+        uint32_t child = t->nodes[node].child[o];
+        if (!child) continue;
+        clamp_visit(c, child, v3(o & 1 ? lo.x + half : lo.x, o & 2 ? lo.y + half : lo.y, o & 4 ? lo.z + half : lo.z),
+                    half);
+    }
+}
+
+static void clamp_neighbors(SheenRecordStore *store, Record *r)
+{
+    if (record_is_sliver(r)) return;
+    Clamp c = {.store = store, .p = r->p, .R = r->R, .smallest = r->R};
+    clamp_visit(&c, 0, store->octree->lo, store->octree->side);
+    r->R = maxf(r->R_min, c.smallest);
+    c.limit = r->R;
+    c.shrink = true;
+    clamp_visit(&c, 0, store->octree->lo, store->octree->side);
+}
+
+SheenStatus sheen_store_insert(SheenRecordStore *s, const Record *record)
+{
+    if (s->n == s->capacity) {
+        uint32_t capacity = s->capacity ? 2 * s->capacity : 1024;
+        if (capacity < s->capacity) return SHEEN_ERR_NOMEM;
+        Record *grown = realloc(s->records, (size_t)capacity * sizeof *grown);
+        if (!grown) return SHEEN_ERR_NOMEM;
+        s->records = grown;
+        s->capacity = capacity;
+    }
+    Record r = *record;
+    if (s->neighbor_clamping) clamp_neighbors(s, &r);
+    SheenStatus status = sheen_octree_insert(s->octree, r.p, s->accuracy * r.R, s->n);
+    if (status != SHEEN_OK) return status;
+    s->records[s->n++] = r;
+    return SHEEN_OK;
+}
+
+// The weight w - 1/a of a record, continuous where its influence ends. A record whose radius had to be enlarged to what
+// the picture resolves keeps its full weight within its own radius; in the ring beyond it a thousandth: that decides
+// only where no other record reaches. A contact's darkness would otherwise paint discs onto the open floor beside it.
+// @param cover  out: 2 for a record that reaches the point by itself, 1 where it was enlarged
+static float influence(const SheenRecordStore *s, const Record *r, float d2, float cos_n, unsigned *cover)
+{
+    const float ring = 1e-3f;
+    float least = 1.0f / s->accuracy, w = record_weight(r->R, d2, cos_n) - least;
+    if (!record_is_enlarged(r)) {
+        *cover = 2;
+        return w;
+    }
+    float own = record_weight(r->R_sure, d2, cos_n) - least;
+    *cover = own > 0.0f ? 2 : 1;
+    return ring * minf(w, least) + maxf(own, 0.0f);
+}
+
+// Adds a contributor; when there are too many it takes the place of the lightest: large records are met first, and
+// small ones would be left out where a surface shows most detail.
+static void add_contributor(uint32_t record, float w, Contributors *out)
+{
+    unsigned at = out->n;
+    if (out->n < SHEEN_CONTRIBUTORS_MAX)
+        ++out->n;
+    else {
+        at = 0;
+        for (unsigned i = 1; i < out->n; ++i)
+            if (out->weight[i] < out->weight[at]) at = i;
+        if (!(w > out->weight[at])) return;
+        out->weight_sum -= out->weight[at];
+    }
+    out->record[at] = record;
+    out->weight[at] = w;
+    out->weight_sum += w;
+}
+
+// Takes a record when it serves the point. @param d2  squared distance, below the square of the record's reach
+static void consider(const SheenRecordStore *s, uint32_t record, float d2, Vec3 p, Vec3 n, float slack,
+                     Contributors *out)
+{
+    const Record *r = &s->records[record];
+    unsigned cover;
+    float w = influence(s, r, d2, v3_dot(n, r->n), &cover);
+    if (!(w > 0.0f) || record_in_front(r, p, n, s->accuracy, slack)) return;
+    add_contributor(record, minf(w, weight_max), out);
+    out->cover += cover;
+}
+
+// The records of a block that reach the point, the newest first.
+static void consider_block(const SheenRecordStore *s, const OctreeBlock *b, Vec3 p, Vec3 n, float slack,
+                           Contributors *out)
+{
+    float d2[SHEEN_OCTREE_LANES];
+    octree_block_distances2(b, p, d2);
+    for (unsigned lanes = octree_block_holding(b, d2); lanes != 0;) {
+        unsigned lane = 31u - (unsigned)__builtin_clz(lanes);
+        lanes ^= 1u << lane;
+        consider(s, b->record[lane], d2[lane], p, n, slack, out);
+    }
+}
+
+void sheen_store_find(const SheenRecordStore *s, Vec3 p, Vec3 n, float slack, Contributors *out)
+{
+    out->n = out->cover = 0;
+    out->weight_sum = 0.0f;
+    const SheenOctree *t = s->octree;
+    for (OctreeWalk walk = octree_walk(t); walk.node != SHEEN_OCTREE_END; octree_descend(t, &walk, p))
+        for (uint32_t b = t->nodes[walk.node].blocks; b; b = t->blocks[b].next)
+            consider_block(s, &t->blocks[b], p, n, slack, out);
+}
+
+float sheen_store_expect_radius(const SheenRecordStore *s, Vec3 p)
+{
+    float least = INFINITY;
+    const SheenOctree *t = s->octree;
+    for (OctreeWalk walk = octree_walk(t); walk.node != SHEEN_OCTREE_END; octree_descend(t, &walk, p))
+        for (uint32_t b = t->nodes[walk.node].blocks; b; b = t->blocks[b].next) {
+            float d2[SHEEN_OCTREE_LANES];
+            octree_block_distances2(&t->blocks[b], p, d2);
+            for (int i = 0; i < SHEEN_OCTREE_LANES; ++i)
+                least = minf(sqrtf(t->blocks[b].reach2[i]) / s->accuracy + sqrtf(d2[i]), least);
+        }
+    return least;
+}
+
+uint64_t sheen_store_bytes(const SheenRecordStore *s)
+{
+    return (uint64_t)s->n * sizeof *s->records + sheen_octree_bytes(s->octree);
+}

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// The store of records: insertion with clamping, and which records serve a point. Knows not what light they hold, no
+// scene and no rays.
+#ifndef SHEEN_CACHE_STORE_H
+#define SHEEN_CACHE_STORE_H
+
+#include "cache/octree.h"
+#include "cache/record.h"
+
+/** Records in the order of insertion. Readers may run in parallel while nobody inserts. */
+typedef struct SheenRecordStore {
+    float accuracy;         // a: a record is used where w > 1/a
+    bool neighbor_clamping; // krivanek2006-making-caching-practical sec. 5.2
+    SheenOctree *octree;
+    Record *records;
+    uint32_t n, capacity;
+} SheenRecordStore;
+
+/**
+ * @param accuracy  a in (0, 1]; small is accurate and slow
+ * @param bounds    where records and shading points will be
+ */
+SHEEN_NODISCARD SheenStatus sheen_store_create(float accuracy, bool neighbor_clamping, const Bounds *bounds,
+                                               SheenRecordStore **out);
+void sheen_store_destroy(SheenRecordStore **store);
+
+/**
+ * Stores a copy of the record. With neighbor clamping its radius first becomes at most R_j + distance of each record j,
+ * and then those records' radii at most R + distance, none below its own R_min. Slivers clamp nobody.
+ * Source: krivanek2006-making-caching-practical sec. 5.2, with radii clamped to their minimum first: a contact's tiny
+ * unclamped radius would otherwise push all its neighbors to their minimum too.
+ */
+SHEEN_NODISCARD SheenStatus sheen_store_insert(SheenRecordStore *store, const Record *record);
+
+/** The records that serve a point. */
+enum { SHEEN_CONTRIBUTORS_MAX = 32 };
+typedef struct Contributors {
+    unsigned n;
+    uint32_t record[SHEEN_CONTRIBUTORS_MAX];
+    float weight[SHEEN_CONTRIBUTORS_MAX]; // w - 1/a > 0: continuous where a record's influence ends
+    float weight_sum;                     // 0 when no record covers the point
+    unsigned cover;                       // two or more where the point needs no further record
+} Contributors;
+
+/**
+ * Finds the records with w > 1/a at (p, n), none in front of which the point lies. More than SHEEN_CONTRIBUTORS_MAX:
+ * the heaviest are kept. Thread-safe.
+ * @param n      unit normal of the lit side
+ * @param slack  metres that p may lie off its surface: added to the tolerance of the test for points in front
+ */
+void sheen_store_find(const SheenRecordStore *store, Vec3 p, Vec3 n, float slack, Contributors *out);
+
+/**
+ * The radius R that a record at p may be expected to have: the least R_j + distance over the records that lie near it
+ * in the octree, with their radii as inserted. INFINITY where there is none. Thread-safe. Source:
+ * krivanek2006-making-caching-practical sec. 5.2, its inequality used as a guess.
+ */
+float sheen_store_expect_radius(const SheenRecordStore *store, Vec3 p);
+
+uint64_t sheen_store_bytes(const SheenRecordStore *store);
+
+#endif
