@@ -59,6 +59,7 @@ static const char *const material_kinds[] = {
     [SHEEN_MATERIAL_DIFFUSE_TRANSMIT] = "diffuse-transmitter",
     [SHEEN_MATERIAL_PHONG] = "phong",
     [SHEEN_MATERIAL_WARD] = "ward",
+    [SHEEN_MATERIAL_LAFORTUNE] = "lafortune",
     [SHEEN_MATERIAL_PRINCIPLED] = "principled",
     [SHEEN_MATERIAL_PRINCIPLED_THIN] = "principled-thin",
     [SHEEN_MATERIAL_ROUGH_DIFFUSE] = "rough-diffuse",

@@ -120,6 +120,8 @@ typedef void SheenMitsubaMaterialFn(Mitsuba *m, SheenXml *e, SheenMaterial *out)
 /** mitsuba_layers.c: materials that hold others. */
 SheenMitsubaMaterialFn sheen_mi_twosided, sheen_mi_blend, sheen_mi_mixture, sheen_mi_mask, sheen_mi_bumpmap,
     sheen_mi_normalmap, sheen_mi_coating, sheen_mi_roughcoating;
+/** mitsuba_lafortune.c. */
+void sheen_mi_lafortune(Mitsuba *m, SheenXml *e, SheenMaterial *out);
 /** mitsuba_bsdf.c: diffuse 0.5; reads a <bsdf> into *out; and parts that layers have too. */
 SheenMaterial sheen_mi_default_material(void);
 void sheen_mi_read_material(Mitsuba *m, SheenXml *e, SheenMaterial *out);

@@ -370,6 +370,7 @@ static const Plugin plugins[] = {
     {"roughplastic", read_rough_plastic, NULL},
     {"phong", read_phong, NULL},
     {"ward", read_ward, NULL},
+    {"lafortune", sheen_mi_lafortune, NULL},
     {"principled", read_principled, NULL},
     {"difftrans", read_difftrans, NULL},
     {"null", read_null, NULL},

@@ -28,9 +28,10 @@ typedef enum BsdfClass {
 /** An elementary BSDF with its textures looked up. Its fields are for src/material. */
 typedef struct BsdfLobe {
     const struct BsdfOps *ops;
-    const SheenMaterial *material; // what it is a part of, for constants
-    float weight;                  // share of the whole, [0, 1]
-    uint32_t wrap;                 // the innermost wrapper around it, counted from 1; 0 for none
+    const SheenMaterial *material;   // what it is a part of, for constants
+    float weight;                    // share of the whole, [0, 1]
+    uint32_t wrap;                   // the innermost wrapper around it, counted from 1; 0 for none
+    const SheenLafortune *lafortune; // of a lobe of Lafortune's
     Rgb reflectance, transmittance;
     Microfacet microfacet;
     struct {

@@ -30,7 +30,7 @@ extern const BsdfOps sheen_lobe_lambert, sheen_lobe_coated_lambert, sheen_lobe_r
 extern const BsdfOps sheen_lobe_conductor, sheen_lobe_dielectric, sheen_lobe_thin_dielectric, sheen_lobe_coat,
     sheen_lobe_passage;                                                                              // delta lobes
 extern const BsdfOps sheen_lobe_rough_conductor, sheen_lobe_rough_dielectric, sheen_lobe_rough_coat; // microfacets
-extern const BsdfOps sheen_lobe_phong, sheen_lobe_ward;                                              // empirical
+extern const BsdfOps sheen_lobe_phong, sheen_lobe_ward, sheen_lobe_lafortune;                        // empirical
 extern const BsdfOps sheen_lobe_principled_diffuse, sheen_lobe_principled_specular, sheen_lobe_principled_clearcoat;
 extern const BsdfOps sheen_lobe_thin_reflection, sheen_lobe_thin_transmission; // of a principled sheet
 

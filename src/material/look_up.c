@@ -47,6 +47,7 @@ static BsdfLobe *add_lobe(Place *p, const Inside *in, const BsdfOps *ops, const 
     lobe->material = m;
     lobe->weight = in->weight;
     lobe->wrap = in->wrap;
+    lobe->lafortune = NULL;
     lobe->reflectance = lobe->transmittance = rgb_gray(0.0f);
     lobe->microfacet = (Microfacet){.distribution = m->distribution, .alpha_u = 1.0f, .alpha_v = 1.0f};
     return lobe;
@@ -166,6 +167,12 @@ static void add_plastic(Place *p, const Inside *in, const SheenMaterial *m)
         rgb(1.0f / (i2 * (1.0f - back.r)), 1.0f / (i2 * (1.0f - back.g)), 1.0f / (i2 * (1.0f - back.b)));
 }
 
+// A Beckmann lobe of this roughness is as wide as cos^n. Source: walter2007
+static float alpha_of_exponent(float n)
+{
+    return clampf(sqrtf(2.0f / (n + 2.0f)), SHEEN_ALPHA_MIN, 1.0f);
+}
+
 static void add_glossy_on_diffuse(Place *p, const Inside *in, const SheenMaterial *m)
 {
     add_lambert(p, in, m);
@@ -173,9 +180,19 @@ static void add_glossy_on_diffuse(Place *p, const Inside *in, const SheenMateria
     lobe->reflectance = color_at(p, &m->specular_reflectance);
     if (m->kind == SHEEN_MATERIAL_WARD) {
         set_microfacet(p, lobe, m);
-    } else { // as wide as a Beckmann lobe of this roughness. Source: walter2007
-        float alpha = clampf(sqrtf(2.0f / (m->exponent + 2.0f)), SHEEN_ALPHA_MIN, 1.0f);
-        lobe->microfacet.alpha_u = lobe->microfacet.alpha_v = alpha;
+    } else {
+        lobe->microfacet.alpha_u = lobe->microfacet.alpha_v = alpha_of_exponent(m->exponent);
+    }
+}
+
+static void add_lafortune(Place *p, const Inside *in, const SheenMaterial *m)
+{
+    add_lambert(p, in, m);
+    for (uint32_t i = 0; i < m->n_lafortune; ++i) {
+        BsdfLobe *lobe = add_lobe(p, in, &sheen_lobe_lafortune, m);
+        lobe->lafortune = &m->lafortune[i];
+        lobe->reflectance = color_at(p, &m->specular_reflectance);
+        lobe->microfacet.alpha_u = lobe->microfacet.alpha_v = alpha_of_exponent(lobe->lafortune->exponent);
     }
 }
 
@@ -316,6 +333,9 @@ static void add_leaf(Place *p, const Inside *in, const SheenMaterial *m)
         break;
     case SHEEN_MATERIAL_DIFFUSE_TRANSMIT:
         add_interface(p, in, m, &sheen_lobe_diffuse_transmit, false);
+        break;
+    case SHEEN_MATERIAL_LAFORTUNE:
+        add_lafortune(p, in, m);
         break;
     case SHEEN_MATERIAL_PHONG:
     case SHEEN_MATERIAL_WARD:

@@ -13,6 +13,7 @@ bool sheen_material_may_be_delta(const SheenScene *scene, uint32_t material)
     case SHEEN_MATERIAL_DIFFUSE_TRANSMIT:
     case SHEEN_MATERIAL_PHONG:
     case SHEEN_MATERIAL_WARD:
+    case SHEEN_MATERIAL_LAFORTUNE:
         return false;
     case SHEEN_MATERIAL_BLEND:
     case SHEEN_MATERIAL_SIDES:

@@ -23,12 +23,16 @@ static float schlick_weight(float cosine)
 }
 
 // Schlick's reflectance from r0, for either side of an interface: from the denser one by the refracted cosine.
-static Rgb schlick(Rgb r0, float cosine, float eta)
+static float schlick_share(float cosine, float eta)
 {
     float relative = cosine >= 0.0f ? eta : 1.0f / eta;
     float c_t = safe_sqrtf(1.0f - (1.0f - cosine * cosine) / sqrf(relative));
-    float w = schlick_weight(relative > 1.0f ? fabsf(cosine) : c_t);
-    return rgb_mad(r0, w, rgb_sub(rgb_gray(1.0f), r0));
+    return schlick_weight(relative > 1.0f ? fabsf(cosine) : c_t);
+}
+
+static Rgb schlick(Rgb r0, float cosine, float eta)
+{
+    return rgb_mad(r0, schlick_share(cosine, eta), rgb_sub(rgb_gray(1.0f), r0));
 }
 
 static Rgb mix(Rgb a, Rgb b, float t)
@@ -92,6 +96,23 @@ Rgb sheen_principled_fresnel(const BsdfLobe *b, float F, float cosine)
         sum = rgb_mad(sum, (1.0f - metallic) * tint, schlick(r0, cosine, eta));
     }
     return sum;
+}
+
+void sheen_principled_fresnel_terms(float ior, float cosine, float terms[SHEEN_FRESNEL_TERMS])
+{
+    float cos_t;
+    terms[SHEEN_FRESNEL_EXACT] = sheen_fresnel_dielectric(cosine, ior, &cos_t);
+    terms[SHEEN_FRESNEL_ONE] = 1.0f;
+    terms[SHEEN_FRESNEL_SCHLICK] = schlick_share(cosine, ior);
+}
+
+void sheen_principled_fresnel_factors(const BsdfLobe *b, Rgb factors[SHEEN_FRESNEL_TERMS])
+{
+    float eta = b->material->ior, metallic = b->principled.metallic, tint = b->principled.spec_tint;
+    Rgb one = rgb_gray(1.0f), r0 = rgb_scale(tint_of(b->reflectance), sqrf((eta - 1.0f) / (eta + 1.0f)));
+    factors[SHEEN_FRESNEL_EXACT] = rgb_gray((1.0f - metallic) * (1.0f - tint));
+    factors[SHEEN_FRESNEL_ONE] = mix(rgb_scale(r0, tint), b->reflectance, metallic);
+    factors[SHEEN_FRESNEL_SCHLICK] = mix(rgb_scale(rgb_sub(one, r0), tint), rgb_sub(one, b->reflectance), metallic);
 }
 
 // From behind there is only glass, without tint or metal.

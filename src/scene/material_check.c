@@ -27,6 +27,7 @@ static const Traits traits_of_kind[] = {
     [SHEEN_MATERIAL_WARD] = {.n_lobes = 2, .has_alpha = true, .anisotropic = true},
     [SHEEN_MATERIAL_PRINCIPLED] = {.n_lobes = 3, .has_ior = true, .anisotropic = true},
     [SHEEN_MATERIAL_PRINCIPLED_THIN] = {.n_lobes = 4, .has_ior = true, .anisotropic = true},
+    [SHEEN_MATERIAL_LAFORTUNE] = {.n_lobes = 1, .anisotropic = true},
     [SHEEN_MATERIAL_ROUGH_DIFFUSE] = {.n_lobes = 1},
     [SHEEN_MATERIAL_BLEND] = {.n_nested = 2},
     [SHEEN_MATERIAL_SIDES] = {.n_nested = 2, .n_wraps = 2},
@@ -108,6 +109,32 @@ static void check_principled(const Check *c, SheenArena *arena)
     c->m->anisotropic = !is_zero(&p->anisotropic);
 }
 
+/** Numbers beyond the clamps would overflow the power; lobes beyond the room for them are left out. */
+static bool check_lafortune(const Check *c, SheenArena *arena)
+{
+    SheenMaterial *m = c->m;
+    uint32_t most = SHEEN_MATERIAL_MAX_LOBES - 1;
+    if (m->n_lafortune > most)
+        sheen_warn(c->log, "%s: material '%s' has %u lobes: the first %u are used", c->scene, m->name, m->n_lafortune,
+                   most);
+    m->n_lafortune = m->n_lafortune < most ? m->n_lafortune : most;
+    SheenLafortune *lobes = SHEEN_ARENA_NEW(arena, SheenLafortune, m->n_lafortune);
+    if (!lobes) return false;
+    for (uint32_t i = 0; i < m->n_lafortune; ++i) {
+        SheenLafortune *l = &lobes[i];
+        *l = m->lafortune[i];
+        float *numbers[] = {&l->c.x, &l->c.y, &l->c.z};
+        for (int k = 0; k < 3; ++k) *numbers[k] = in_range(c, "a lobe's direction", *numbers[k], -2.0f, 2.0f, 0.0f);
+        l->exponent = in_range(c, "the exponent", l->exponent, 0.0f, 1e6f, 10.0f);
+        float *weights[] = {&l->weight.r, &l->weight.g, &l->weight.b};
+        for (int k = 0; k < 3; ++k) *weights[k] = in_range(c, "a lobe's weight", *weights[k], 0.0f, 1e6f, 0.0f);
+        m->anisotropic = m->anisotropic || l->c.x != l->c.y;
+    }
+    m->lafortune = lobes;
+    m->n_lobes += m->n_lafortune;
+    return true;
+}
+
 static void check_numbers(const Check *c, const Traits *t)
 {
     SheenMaterial *m = c->m;
@@ -169,6 +196,7 @@ SheenStatus sheen_material_complete(const SheenLog *log, const char *scene, Shee
         check_principled(&c, arena);
         if (!m->principled) return SHEEN_ERR_NOMEM;
     }
+    if (m->kind == SHEEN_MATERIAL_LAFORTUNE && !check_lafortune(&c, arena)) return SHEEN_ERR_NOMEM;
     for (uint32_t i = 0; i < t->n_nested; ++i) {
         if (m->nested[i] >= n) return SHEEN_ERR_INVALID;
         const SheenMaterial *nested = &earlier[m->nested[i]];

@@ -84,6 +84,7 @@ typedef enum SheenMaterialKind {
     SHEEN_MATERIAL_WARD,             // reflectance, specular_reflectance, alpha_u, alpha_v, ward
     SHEEN_MATERIAL_PRINCIPLED,       // reflectance (the base colour), ior, alpha_u (the roughness), principled
     SHEEN_MATERIAL_PRINCIPLED_THIN,  // the same of a sheet without thickness
+    SHEEN_MATERIAL_LAFORTUNE,        // reflectance, specular_reflectance, lafortune
     SHEEN_MATERIAL_ROUGH_DIFFUSE,    // Oren and Nayar's: reflectance, alpha_u, fast
     // Materials that hold others.
     SHEEN_MATERIAL_BLEND,   // 1 - weight of nested[0] and weight of nested[1]
@@ -108,6 +109,13 @@ typedef struct SheenPrincipled {
     SheenTexture diff_trans;                           // of a sheet: twice the share of diffuse light that goes through
 } SheenPrincipled;
 
+/** A lobe of Lafortune's: f = weight (n + 2) / (2 pi) max(0, c.x wo_x wi_x + c.y wo_y wi_y + c.z wo_z wi_z)^n. */
+typedef struct SheenLafortune {
+    Vec3 c;
+    float exponent; // n
+    Rgb weight;
+} SheenLafortune;
+
 typedef struct SheenMaterial {
     SheenMaterialKind kind;
     bool two_sided;                      // the back side looks like the front (not where something transmits)
@@ -130,6 +138,8 @@ typedef struct SheenMaterial {
     bool shadow_normals;                 // maps: light along the surface fades out, see conty2019-terminator
     uint32_t nested[2];                  // index of materials that were added before
     const SheenPrincipled *principled;   // in the builder's arena; NULL for other kinds
+    const SheenLafortune *lafortune;     // [n_lafortune] in the builder's arena
+    uint32_t n_lafortune;                // at most SHEEN_MATERIAL_MAX_LOBES - 1
     const char *name;                    // id in the scene file or plugin name; never NULL
     // Completed by the builder:
     const struct SheenCoat *coat; // rough interfaces with something below: what they let through

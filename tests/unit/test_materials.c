@@ -14,6 +14,7 @@
 #define RGB(name, value) "<rgb name='" #name "' value='" #value "'/>"
 #define BSDF(type, inside) "<bsdf type='" type "'>" inside "</bsdf>"
 #define DIFFUSE BSDF("diffuse", RGB(reflectance, 0.2 0.5 0.8))
+#define LOBE(i, x, y, z, n) "<vector name='lobe_" #i "' value='" #x " " #y " " #z "'/>" F(exponent_##i, n)
 #define BASE RGB(base_color, 0.8 0.4 0.2)
 
 typedef struct Case {
@@ -50,6 +51,14 @@ static const Case cases[] = {
      true},
     {"ward", BSDF("ward", F(alpha_u, 0.3) F(alpha_v, 0.15)), 1, true, true},
     {"ward, 1992", BSDF("ward", F(alpha, 0.2) "<string name='variant' value='ward'/>"), 1, true, true},
+    {"ward, duer", BSDF("ward", F(alpha, 0.2) "<string name='variant' value='ward-duer'/>"), 1, true, true},
+    {"ward, 1992, u v", BSDF("ward", F(alpha_u, 0.15) F(alpha_v, 0.3) "<string name='variant' value='ward'/>"), 1, true,
+     true},
+    {"lafortune",
+     BSDF("lafortune", RGB(diffuse_reflectance, 0.2) LOBE(1, -0.9, -0.9, 0.8, 16) RGB(weight_1, 0.3 0.2 0.1)
+                           LOBE(2, 0.7, 0.7, 0.6, 5) RGB(weight_2, 0.2 0.3 0.9)),
+     1, true, true},
+    {"lafortune x y", BSDF("lafortune", RGB(diffuse_reflectance, 0) LOBE(1, -0.95, -0.5, 0.9, 20)), 1, true, true},
     {"blend", BSDF("blendbsdf", F(weight, 0.3) DIFFUSE BSDF("plastic", "")), 1, true, true},
     {"mixture",
      BSDF("mixturebsdf",
@@ -304,6 +313,29 @@ static void test_rough_diffuse_follows_its_paper(void **state)
     sheen_scene_destroy(&scene[1]);
 }
 
+/** Lafortune's lobe about the mirror direction is Phong's; each further one adds to it. */
+static void test_lafortune_holds_phong(void **state)
+{
+    (void)state;
+    SheenScene *phong = scene_of(BSDF("phong", F(exponent, 20) RGB(specular_reflectance, 0.3)));
+    SheenScene *one = scene_of(BSDF("lafortune", LOBE(1, -1, -1, 1, 20) RGB(weight_1, 0.3)));
+    SheenScene *three = scene_of(BSDF("lafortune", LOBE(1, -1, -1, 1, 20) RGB(weight_1, 0.05) LOBE(2, -1, -1, 1, 20)
+                                                       RGB(weight_2, 0.2) LOBE(3, -1, -1, 1, 20) RGB(weight_3, 0.1)
+                                                           RGB(specular_reflectance, 0.857142857)));
+    Bsdf b[3] = {bsdf_at(phong, v2(0, 0)), bsdf_at(one, v2(0, 0)), bsdf_at(three, v2(0, 0))};
+    assert_int_equal(b[2].n_lobes, 4);
+    Random r = {9, 0};
+    for (int i = 0; i < 500; ++i) {
+        Vec3 wo = warp_sphere(random_2d(&r)), wi = warp_sphere(random_2d(&r));
+        double want = (double)sheen_bsdf_eval(&b[0], wo, wi).g;
+        for (int k = 1; k < 3; ++k) // a rounding of the cosine, to the power of 20
+            assert_near("lafortune", "phong", wo, (double)sheen_bsdf_eval(&b[k], wo, wi).g, want, 1e-5 * want);
+    }
+    sheen_scene_destroy(&phong);
+    sheen_scene_destroy(&one);
+    sheen_scene_destroy(&three);
+}
+
 /** The quadrature of diffuse lobes against many directions, grazing views included. */
 static void test_diffuse_albedos_are_exact(void **state)
 {
@@ -438,6 +470,7 @@ static void test_extremes_stay_finite(void **state)
         BSDF("roughdielectric", F(int_ior, 1) F(ext_ior, 1)),
         BSDF("phong", F(exponent, 1000000)),
         BSDF("ward", F(alpha, 0.0001)),
+        BSDF("lafortune", LOBE(1, -2, -2, 2, 1000000) LOBE(2, 0, 0, 0, 0) LOBE(3, 1, 0, 0, 3)),
         BSDF("roughdiffuse", F(alpha, 10) RGB(reflectance, 1)),
         BSDF("roughdiffuse", F(alpha, 0) "<boolean name='use_fast_approx' value='true'/>"),
         BSDF("principledthin", F(roughness, 0) F(spec_trans, 1) F(eta, 1)),
@@ -477,6 +510,7 @@ int main(void)
         cmocka_unit_test(test_diffuse_albedos_are_exact),    cmocka_unit_test(test_white_plastic_is_white),
         cmocka_unit_test(test_rough_plastic_becomes_smooth), cmocka_unit_test(test_which_materials_may_be_delta),
         cmocka_unit_test(test_delta_lobes_of_mixtures),      cmocka_unit_test(test_extremes_stay_finite),
+        cmocka_unit_test(test_lafortune_holds_phong),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -432,6 +432,22 @@ static void empirical_materials(void **state)
     assert_int_equal(m->ward, SHEEN_WARD_DUER);
     assert_true(m->anisotropic);
     assert_int_equal(k->n_warnings, 2);
+    m = material(k, "3.0.0",
+                 "<bsdf type=\"lafortune\" id=\"m\"><vector name=\"lobe_1\" x=\"-1\" y=\"-0.5\" z=\"0.75\"/>"
+                 "<float name=\"exponent_1\" value=\"16\"/><rgb name=\"weight_2\" value=\"0.1 0.2 0.3\"/></bsdf>");
+    assert_int_equal(m->kind, SHEEN_MATERIAL_LAFORTUNE);
+    assert_int_equal(m->n_lafortune, 2);
+    assert_true(m->anisotropic && m->lafortune[0].c.y == -0.5f && m->lafortune[0].exponent == 16.0f);
+    assert_true(m->lafortune[1].c.x == -1.0f && m->lafortune[1].exponent == 30.0f);
+    assert_float_equal(m->lafortune[1].weight.b, 0.3f, 1e-6f);
+    m = material(k, "3.0.0",
+                 "<bsdf type=\"lafortune\" id=\"m\"><float name=\"exponent_1\" value=\"1\"/>"
+                 "<float name=\"exponent_2\" value=\"1\"/><float name=\"exponent_3\" value=\"1\"/>"
+                 "<float name=\"exponent_4\" value=\"1\"/><float name=\"exponent_5\" value=\"1\"/>"
+                 "<float name=\"exponent_6\" value=\"1\"/><float name=\"exponent_7\" value=\"1\"/>"
+                 "<float name=\"exponent_8\" value=\"-1\"/></bsdf>");
+    assert_non_null(strstr(k->warnings, "has 8 lobes: the first 7 are used"));
+    assert_true(m->n_lafortune == 7 && m->n_lobes == SHEEN_MATERIAL_MAX_LOBES);
     m = material(k, "0.6.0",
                  "<bsdf type=\"phong\" id=\"m\"><rgb name=\"diffuseReflectance\" value=\"0.9 0.5 0.1\"/>"
                  "<rgb name=\"specularReflectance\" value=\"0.6\"/></bsdf>");
