@@ -40,6 +40,24 @@ static inline void estimate_world_gradient(const Frame *f, const Rgb local[2], V
     out[2] = v3_mad(v3_scale(f->t, local[0].b), local[1].b, f->b);
 }
 
+/**
+ * The radius that the estimate allows: the harmonic mean, bounded by E / |grad E| of the luminance.
+ * Source: krivanek2006-making-caching-practical eq. (2).
+ */
+static inline float estimate_gradient_radius(const IrradianceEstimate *e)
+{
+    float g = hypotf(rgb_luminance(e->translation[0]), rgb_luminance(e->translation[1]));
+    return g > 0.0f ? minf(e->R, maxf(rgb_luminance(e->E), 0.0f) / g) : e->R;
+}
+
+/** Scales the translation gradient down for a record that is used farther than its radius: it would overshoot. */
+static inline void estimate_enlarge(float radius, float used, IrradianceEstimate *e)
+{
+    if (!(radius < used)) return;
+    float scale = maxf(radius, 0.0f) / used;
+    for (int i = 0; i < 2; ++i) e->translation[i] = rgb_scale(e->translation[i], scale);
+}
+
 /** Harmonic mean n / sum(1 / d); distances of INFINITY are zero terms. INFINITY when all are. */
 float sheen_harmonic_mean(unsigned n, const float distance[]);
 

@@ -302,6 +302,7 @@ static void sweep_task(void *user, size_t item, unsigned worker)
     IrradianceLight *light = &d->light[level][item];
     Frame frame = frame_from_normal(d->points[item].n);
     light->E = e.E;
+    estimate_enlarge(estimate_gradient_radius(&e), d->store->records[item].R, &e);
     estimate_world_gradient(&frame, e.translation, light->translation);
     estimate_world_gradient(&frame, e.rotation, light->rotation);
 }
