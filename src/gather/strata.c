@@ -69,3 +69,12 @@ void sheen_strata_directions(SheenStrata s, uint32_t key, Vec3 out[])
 {
     for (unsigned k = 0; k < s.sectors; ++k) sector_directions(s, k, key, out + (size_t)k * s.rings);
 }
+
+uint32_t sheen_strata_cell(SheenStrata s, Vec3 d)
+{
+    float turn = atan2f(d.y, d.x) * (0.5f * SHEEN_INV_PI);
+    float out = s.density == SHEEN_DENSITY_UNIFORM ? 1.0f - d.z : d.x * d.x + d.y * d.y;
+    uint32_t k = (uint32_t)((turn < 0.0f ? turn + 1.0f : turn) * (float)s.sectors);
+    uint32_t j = (uint32_t)(out * (float)s.rings);
+    return (k < s.sectors ? k : s.sectors - 1) * s.rings + (j < s.rings ? j : s.rings - 1);
+}

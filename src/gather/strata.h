@@ -44,6 +44,9 @@ static inline float strata_pdf(SheenStrata s, float cos_theta)
  */
 Vec3 sheen_strata_direction(SheenStrata s, unsigned j, unsigned k, Vec2 u);
 
+/** The cell that a direction lies in. @param d  local, unit, z >= 0 */
+uint32_t sheen_strata_cell(SheenStrata s, Vec3 d);
+
 /**
  * The cells beside cell (j, k), across edges and corners: 8, fewer at the pole and at the horizon.
  * @return their number

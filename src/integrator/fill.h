@@ -3,25 +3,28 @@
 #ifndef SHEEN_INTEGRATOR_FILL_H
 #define SHEEN_INTEGRATOR_FILL_H
 
-#include "cache/irradiance_cache.h"
-#include "integrator/deep.h"
+#include "cache/store.h"
 #include "integrator/visibility.h"
 
-typedef struct SheenFill SheenFill;
+/** How records of one kind are made and kept. */
+typedef struct RecordKind {
+    const SheenRecordStore *store;
+    size_t light_size; // bytes of a record's light
+    void *user;
+    /** Makes the record of a point, and its light; a function of the point and the key alone. Thread-safe for workers
+     *  of different numbers. */
+    void (*make)(void *user, const ShadingPoint *p, uint32_t key, unsigned worker, SheenStats *stats, Record *record,
+                 void *light);
+    /** Stores both, copied. Errors: SHEEN_ERR_NOMEM. */
+    SheenStatus (*insert)(void *user, const Record *record, const void *light);
+} RecordKind;
 
 /**
- * @param deep  light beyond the first bounce; NULL when it is traced as paths, or when there is none
- * @param out   owned by the caller; borrows work, deep and cache
- */
-SHEEN_NODISCARD SheenStatus sheen_fill_create(const SheenWork *work, const SheenDeep *deep, SheenIrradianceCache *cache,
-                                              SheenFill **out);
-void sheen_fill_destroy(SheenFill **fill);
-
-/**
- * Adds records to the cache until each point is covered. The result depends on the points and their order only.
+ * Adds records until each point is covered. The result depends on the points and their order only.
  * @param points  [n] shading points, in the order of their pixels
  * Errors: SHEEN_ERR_NOMEM, SHEEN_ERR_CANCELLED.
  */
-SHEEN_NODISCARD SheenStatus sheen_fill_run(SheenFill *fill, const ShadingPoint points[], size_t n, SheenStats *stats);
+SHEEN_NODISCARD SheenStatus sheen_fill_run(const SheenWork *work, const RecordKind *kind, const ShadingPoint points[],
+                                           size_t n, SheenStats *stats);
 
 #endif

@@ -193,16 +193,8 @@ void sheen_hemisphere_trace(const SheenWork *work, const DiffusePoint *point, un
 // The share of one ray along d, in a cell with `rays` of its own, where the cones send more.
 static float ray_weight(const Hemisphere *h, Vec3 d, uint32_t rays)
 {
-    float density = (float)h->cells * SHEEN_INV_PI * d.z; // of one ray in each cell, per steradian
+    float density = (float)h->cells * strata_pdf(h->strata, d.z); // of one ray in each cell, per steradian
     return density / ((float)rays * density + guide_density(&h->guide, d));
-}
-
-static uint32_t cell_along(SheenStrata s, Vec3 d)
-{
-    float turn = atan2f(d.y, d.x) * (0.5f * SHEEN_INV_PI);
-    uint32_t k = (uint32_t)((turn < 0.0f ? turn + 1.0f : turn) * (float)s.sectors);
-    uint32_t j = (uint32_t)((d.x * d.x + d.y * d.y) * (float)s.rings);
-    return (k < s.sectors ? k : s.sectors - 1) * s.rings + (j < s.rings ? j : s.rings - 1);
 }
 
 static size_t add_cones(Hemisphere *h)
@@ -212,7 +204,7 @@ static size_t add_cones(Hemisphere *h)
     for (uint32_t c = 0; c < h->guide.n; ++c)
         for (uint32_t e = 0; e < h->guide.cones[c].rays && n < SHEEN_FURTHER_MAX * h->cells; ++e) {
             Vec3 d = sheen_cone_direction(&h->guide.cones[c], kronecker(hash_combine(key, (uint32_t)h->cells + c), e));
-            if (d.z > 1e-4f) h->further[n++] = (GatherRay){.d = d, .cell = cell_along(h->strata, d)};
+            if (d.z > 1e-4f) h->further[n++] = (GatherRay){.d = d, .cell = sheen_strata_cell(h->strata, d)};
         }
     return n;
 }

@@ -49,7 +49,7 @@ static bool give_rays(const HotSpot *spot, float omega, SheenStrata strata, floa
     const float tolerated = 0.3f; // of the error sought: there are other sources, and other spots
     const float cells_max = 4.0f; // wider spots the strata find
     float n = (float)strata_count(strata);
-    float cells = n * cone->axis.z * SHEEN_INV_PI * omega;
+    float cells = n * strata_pdf(strata, cone->axis.z) * omega;
     float share = cells * spot->radiance / (n * mean); // of the irradiance, if all of it is seen
     if (!(cells < cells_max) || !(share > tolerated * error * sqrtf(cells))) return false;
     cone->rays = (uint32_t)clampf(sqrf(spread * share / error), RAYS_MIN, RAYS_MAX);

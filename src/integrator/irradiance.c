@@ -3,7 +3,7 @@
 #include "base/clock.h"
 #include "cache/smooth.h"
 #include "integrator/deep.h"
-#include "integrator/fill.h"
+#include "integrator/irradiance_record.h"
 #include "integrator/shade.h"
 #include "integrator/work.h"
 
@@ -95,8 +95,15 @@ static bool gathers_see_light(const SheenScene *scene)
     return lamps && delta;
 }
 
-static SheenStatus fill_cache(const SheenWork *work, SheenIrradianceCache *cache, SheenDeep **deep, SheenFill **fill,
-                              SheenStats *stats)
+static SheenStatus run_fill(const SheenWork *work, SheenIrradianceMaker *maker, const ShadingPoint points[], size_t n,
+                            SheenStats *stats)
+{
+    RecordKind kind = sheen_irradiance_kind(maker);
+    return sheen_fill_run(work, &kind, points, n, stats);
+}
+
+static SheenStatus fill_cache(const SheenWork *work, SheenIrradianceCache *cache, SheenDeep **deep,
+                              SheenIrradianceMaker **maker, SheenStats *stats)
 {
     ShadingPoint *points = NULL;
     size_t n = 0;
@@ -110,8 +117,8 @@ static SheenStatus fill_cache(const SheenWork *work, SheenIrradianceCache *cache
     bool deeper = bounces > 1 || (bounces == 1 && gathers_see_light(work->scene));
     if (status == SHEEN_OK && deeper && work->options.secondary == SHEEN_SECONDARY_CACHE)
         status = create_deep(work, points, n, stats, deep);
-    if (status == SHEEN_OK) status = sheen_fill_create(work, *deep, cache, fill);
-    if (status == SHEEN_OK) status = sheen_fill_run(*fill, points, n, stats);
+    if (status == SHEEN_OK) status = sheen_irradiance_maker_create(work, *deep, cache, maker);
+    if (status == SHEEN_OK) status = run_fill(work, *maker, points, n, stats);
     if (status == SHEEN_OK)
         status = sheen_irradiance_cache_smooth(cache, &work->scene->bounds, work->pool, work->cancel);
     stats->time_fill += sheen_clock_seconds() - t1;
@@ -120,14 +127,14 @@ static SheenStatus fill_cache(const SheenWork *work, SheenIrradianceCache *cache
 }
 
 // Shades samples of each pixel from `first` on, and fills the cache where they see what no record covers.
-static SheenStatus shade(const SheenWork *work, SheenIrradianceCache *cache, SheenFill *fill, uint32_t first,
-                         Picture *picture, SheenStats *stats)
+static SheenStatus shade(const SheenWork *work, SheenIrradianceCache *cache, SheenIrradianceMaker *maker,
+                         uint32_t first, Picture *picture, SheenStats *stats)
 {
     Uncovered uncovered = {0};
     SheenStatus status = sheen_shade(work, cache, first, picture, &uncovered, stats);
     if (status == SHEEN_OK && uncovered.n > 0) {
         double start = sheen_clock_seconds();
-        status = sheen_fill_run(fill, uncovered.points, uncovered.n, stats);
+        status = run_fill(work, maker, uncovered.points, uncovered.n, stats);
         stats->time_fill += sheen_clock_seconds() - start;
         if (status == SHEEN_OK) sheen_shade_uncovered(work, cache, &uncovered, picture, stats);
     }
@@ -135,15 +142,15 @@ static SheenStatus shade(const SheenWork *work, SheenIrradianceCache *cache, She
     return status;
 }
 
-static SheenStatus shade_picture(const SheenWork *work, SheenIrradianceCache *cache, SheenFill *fill, SheenFilm *film,
-                                 SheenStats *stats)
+static SheenStatus shade_picture(const SheenWork *work, SheenIrradianceCache *cache, SheenIrradianceMaker *maker,
+                                 SheenFilm *film, SheenStats *stats)
 {
     Picture picture;
     uint64_t more = 0;
     if (!sheen_picture_create(work, film, &picture)) return SHEEN_ERR_NOMEM;
-    SheenStatus status = shade(work, cache, fill, 0, &picture, stats);
+    SheenStatus status = shade(work, cache, maker, 0, &picture, stats);
     if (status == SHEEN_OK && !sheen_picture_plan(work->options.noise, &picture, &more)) status = SHEEN_ERR_NOMEM;
-    if (status == SHEEN_OK && more > 0) status = shade(work, cache, fill, work->options.spp, &picture, stats);
+    if (status == SHEEN_OK && more > 0) status = shade(work, cache, maker, work->options.spp, &picture, stats);
     sheen_picture_average(&picture);
     stats->spp_done = work->options.spp;
     stats->spp_mean = (double)work->options.spp + (double)more / ((double)film->width * film->height);
@@ -155,21 +162,21 @@ SheenStatus sheen_irradiance_render(const SheenWork *work, SheenFilm *film, Shee
 {
     SheenIrradianceCache *cache = NULL;
     SheenDeep *deep = NULL;
-    SheenFill *fill = NULL;
+    SheenIrradianceMaker *maker = NULL;
     bool indirect = work->options.bounces > 0 || gathers_see_light(work->scene);
     SheenStatus status = SHEEN_OK;
     if (indirect) {
         status = sheen_irradiance_cache_create(work->options.accuracy, work->options.neighbor_clamping,
                                                &work->scene->bounds, &cache);
-        if (status == SHEEN_OK) status = fill_cache(work, cache, &deep, &fill, stats);
+        if (status == SHEEN_OK) status = fill_cache(work, cache, &deep, &maker, stats);
     }
-    if (status == SHEEN_OK) status = shade_picture(work, cache, fill, film, stats);
+    if (status == SHEEN_OK) status = shade_picture(work, cache, maker, film, stats);
     if (cache) {
         stats->records = cache->store->n;
         stats->cache_bytes = sheen_irradiance_cache_bytes(cache);
     }
     if (deep) stats->deep_records = sheen_deep_records(deep);
-    sheen_fill_destroy(&fill);
+    sheen_irradiance_maker_destroy(&maker);
     sheen_deep_destroy(&deep);
     sheen_irradiance_cache_destroy(&cache);
     return status;

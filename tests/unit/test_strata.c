@@ -94,9 +94,23 @@ static void test_density(void **state)
     }
 }
 
+// Each sample lies in its own cell; but one on a cell's edge may fall into the next by rounding.
+static void test_cells(void **state)
+{
+    (void)state;
+    static Vec3 d[2048];
+    SheenStrata both[] = {sheen_strata_cosine(1024), sheen_strata_uniform(1024)};
+    for (int i = 0; i < 2; ++i) {
+        unsigned n = strata_count(both[i]), off = 0;
+        sheen_strata_directions(both[i], 11, d);
+        for (unsigned c = 0; c < n; ++c) off += sheen_strata_cell(both[i], d[c]) != c;
+        assert_in_range(off, 0, 2);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_directions), cmocka_unit_test(test_counts),
-                                       cmocka_unit_test(test_density)};
+                                       cmocka_unit_test(test_density), cmocka_unit_test(test_cells)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integrator/gather_light.h"
+
+// A record may have as many times the error that is aimed at as its reach is enlarged, up to so many.
+static const float error_growth_max = 3.0f;
+enum {
+    LIGHT_SAMPLES = 1,  // at each hit of a gather: the best value per ray of 1, 2 and 4
+    EXTENSIONS_MAX = 2, // vertices by which near hits are moved on
+};
+
+// Light at the vertices beyond their direct light, from the deep records.
+static void add_deep_light(const SheenDeep *deep, Hemisphere *h)
+{
+    if (!deep) return;
+    enum { BLOCK = 64 };
+    DeepQuery queries[BLOCK];
+    for (size_t first = 0; first < h->n_vertices; first += BLOCK) {
+        const GatherVertex *v = h->vertices + first;
+        size_t n = h->n_vertices - first < BLOCK ? h->n_vertices - first : BLOCK;
+        for (size_t i = 0; i < n; ++i)
+            queries[i] = sheen_deep_ask(deep, v[i].point.p, v[i].point.n, v[i].distance, (int)v[i].bounces - 1,
+                                        hash_combine(h->key, v[i].ray));
+        for (size_t i = 0; i < n; ++i) {
+            Rgb E = sheen_deep_answer(deep, &queries[i]);
+            h->L[v[i].cell] = rgb_add(h->L[v[i].cell], rgb_mul(v[i].weight, E));
+        }
+    }
+}
+
+// Light at the vertices of the rays traced last: direct, and from deeper bounces.
+static void light_vertices(const SheenWork *work, const SheenDeep *deep, Hemisphere *h, SheenStats *stats)
+{
+    sheen_hemisphere_direct(work, 0, LIGHT_SAMPLES, h, stats);
+    bool paths = work->options.secondary == SHEEN_SECONDARY_PATH;
+    float near = paths ? INFINITY : deep ? sheen_deep_near(deep) : 0.0f;
+    unsigned extensions = paths ? work->options.bounces : EXTENSIONS_MAX;
+    for (unsigned i = 0; i < extensions; ++i) {
+        size_t before = h->n_vertices, moved = sheen_hemisphere_extend(work, near, h, stats);
+        if (moved == 0) break;
+        sheen_hemisphere_direct(work, before - moved, 1, h, stats);
+    }
+    add_deep_light(deep, h);
+}
+
+// The hot spots that matter at a point, by the mean radiance about it as the deep records know it.
+static void choose_guide(const SheenWork *work, const SheenDeep *deep, const DiffusePoint *p, Hemisphere *h)
+{
+    DeepQuery query = sheen_deep_ask(deep, p->p, p->n, 0.0f, (int)work->options.bounces - 1, 0);
+    float mean = SHEEN_INV_PI * rgb_luminance(sheen_deep_answer(deep, &query));
+    sheen_guide_choose(sheen_deep_hot_spots(deep), p->p, &h->frame, h->strata, mean, SHEEN_GATHER_ERROR, &h->guide);
+}
+
+void sheen_gather_light(const SheenWork *work, const SheenDeep *deep, const DiffusePoint *point, float R_min,
+                        uint32_t key, Hemisphere *h, SheenStats *stats)
+{
+    unsigned bounces = work->options.bounces;
+    sheen_hemisphere_begin(point, key, h);
+    if (deep) choose_guide(work, deep, point, h);
+    sheen_hemisphere_trace(work, point, bounces, h, stats);
+    light_vertices(work, deep, h, stats);
+    float enlarged = R_min / sheen_harmonic_mean((unsigned)h->cells, h->distance);
+    float noisier = clampf(enlarged, 1.0f, error_growth_max);
+    if (sheen_hemisphere_refine(work, point, bounces, noisier * SHEEN_GATHER_ERROR, h, stats))
+        light_vertices(work, deep, h, stats);
+    sheen_hemisphere_add_caustics(work, point, noisier, h, stats);
+    for (size_t i = 0; i < h->cells; ++i)
+        if (!rgb_finite(h->L[i])) {
+            h->L[i] = rgb_gray(0.0f);
+            ++stats->nonfinite_samples;
+        }
+}
