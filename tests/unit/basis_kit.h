@@ -40,26 +40,36 @@ static inline double kit_legendre(int l, int m, double x, double s)
     return p;
 }
 
-/** K_l^m P_l^m at the argument of the basis, sqrt(2) of the hemispherical one included. */
-static inline double kit_zenith(SheenBasis basis, int l, int m, double cos_theta, double sin_theta)
+/** K_l^m P_l^m at the argument of the basis, l = m .. n - 1, with the hemispherical ones' sqrt(2). @param out  at l */
+static inline void kit_zenith(SheenBasis basis, int n, int m, double cos_theta, double sin_theta, double out[])
 {
-    double k2 = (2 * l + 1) / (4 * M_PI);
-    for (int i = 1; i <= 2 * m; ++i) k2 /= l - m + i;
-    if (basis == SHEEN_BASIS_SH) return sqrt(k2) * kit_legendre(l, m, cos_theta, sin_theta);
-    double s = sin_theta > 0 ? 2 * sin_theta * sqrt(cos_theta / (1 + cos_theta)) : 0.0;
-    return sqrt(2 * k2) * kit_legendre(l, m, 2 * cos_theta - 1, s);
+    bool hemisphere = basis == SHEEN_BASIS_HSH;
+    double x = hemisphere ? 2 * cos_theta - 1 : cos_theta, before = 0.0;
+    double s = hemisphere && sin_theta > 0 ? 2 * sin_theta * sqrt(cos_theta / (1 + cos_theta)) : sin_theta;
+    double p = kit_legendre(m, m, x, s);
+    for (int l = m; l < n; ++l) {
+        double k2 = (hemisphere ? 2 : 1) * (2 * l + 1) / (4 * M_PI);
+        for (int i = 1; i <= 2 * m; ++i) k2 /= l - m + i;
+        out[l] = sqrt(k2) * p;
+        double next = ((2 * l + 1) * x * p - (l + m) * before) / (l + 1 - m);
+        before = p;
+        p = next;
+    }
 }
 
 /** All functions; 0 below the horizon for the hemispherical ones. */
 static inline void kit_eval(SheenBasis basis, unsigned n, Direction w, double out[])
 {
-    double sin_theta = sqrt(w.x * w.x + w.y * w.y), phi = atan2(w.y, w.x);
-    for (int l = 0; l < (int)n; ++l)
-        for (int m = 0; m <= l; ++m) {
-            double z = basis == SHEEN_BASIS_HSH && w.z < 0 ? 0.0 : kit_zenith(basis, l, m, w.z, sin_theta);
-            out[basis_index((unsigned)l, m)] = m ? M_SQRT2 * z * cos(m * phi) : z;
-            if (m) out[basis_index((unsigned)l, -m)] = M_SQRT2 * z * sin(m * phi);
+    double sin_theta = sqrt(w.x * w.x + w.y * w.y), phi = atan2(w.y, w.x), zenith[SHEEN_ORDER_MAX];
+    for (int m = 0; m < (int)n; ++m) {
+        double c = m ? M_SQRT2 * cos(m * phi) : 1.0, s = M_SQRT2 * sin(m * phi);
+        if (basis == SHEEN_BASIS_HSH && w.z < 0) c = s = 0.0;
+        kit_zenith(basis, (int)n, m, fmax(w.z, basis == SHEEN_BASIS_HSH ? 0.0 : -1.0), sin_theta, zenith);
+        for (int l = m; l < (int)n; ++l) {
+            if (m) out[basis_index((unsigned)l, -m)] = s * zenith[l];
+            out[basis_index((unsigned)l, m)] = c * zenith[l];
         }
+    }
 }
 
 /** Nodes in (-1, 1) and weights of the Gauss-Legendre rule of n points, exact for polynomials up to 2 n - 1. */
