@@ -115,3 +115,15 @@ void sheen_basis_derive(SheenBasis basis, unsigned n, Vec3 w, float by_theta[], 
         for (unsigned m = 0; m <= l; ++m) middle[m] = -row[m] * imaginary[m];
     }
 }
+
+// Partial sums, so that an addition need not wait for the one before.
+Rgb sheen_basis_dot(unsigned n, const float a[], const Rgb b[])
+{
+    enum { PARTS = 4 };
+    Rgb sum[PARTS] = {{0}};
+    size_t size = basis_size(n), i = 0;
+    for (; i + PARTS <= size; i += PARTS)
+        for (size_t k = 0; k < PARTS; ++k) sum[k] = rgb_mad(sum[k], a[i + k], b[i + k]);
+    for (; i < size; ++i) sum[0] = rgb_mad(sum[0], a[i], b[i]);
+    return rgb_add(rgb_add(sum[0], sum[1]), rgb_add(sum[2], sum[3]));
+}

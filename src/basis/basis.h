@@ -69,4 +69,7 @@ void sheen_basis_derive(SheenBasis basis, unsigned n, Vec3 w, float by_theta[], 
  */
 void sheen_basis_project(SheenBasis basis, unsigned n, size_t count, const Vec3 w[], const Rgb value[], Rgb out[]);
 
+/** sum_i a_i b_i: the integral of the product of two functions, such as a lobe and radiance. @param a, b  [n * n] */
+Rgb sheen_basis_dot(unsigned n, const float a[], const Rgb b[]);
+
 #endif

@@ -384,6 +384,28 @@ static void test_projection(void **state)
             for (int b = 0; b < 2; ++b) check_projection(both[b], orders[k], counts[c]);
 }
 
+static void test_dot(void **state)
+{
+    (void)state;
+    for (unsigned n = 1; n <= SHEEN_ORDER_MAX; ++n) {
+        static float a[SHEEN_BASIS_MAX];
+        static Rgb b[SHEEN_BASIS_MAX];
+        double sum[3] = {0};
+        for (uint32_t i = 0; i < basis_size(n); ++i) {
+            a[i] = hash_to_unit(hash_u32(i)) - 0.3f;
+            b[i] = value_of(i);
+            sum[0] += (double)a[i] * (double)b[i].r;
+            sum[1] += (double)a[i] * (double)b[i].g;
+            sum[2] += (double)a[i] * (double)b[i].b;
+        }
+        Rgb got = sheen_basis_dot(n, a, b);
+        // Roundings of up to 256 sums, of numbers up to 3.5.
+        double bound = 1e-6 * (double)basis_size(n);
+        assert_true(fabs((double)got.r - sum[0]) < bound && fabs((double)got.g - sum[1]) < bound &&
+                    fabs((double)got.b - sum[2]) < bound);
+    }
+}
+
 // Numbers that are none: they may show in the result, but not where a direction below the horizon brings them.
 static void test_broken_numbers(void **state)
 {
@@ -418,6 +440,7 @@ int main(void)
         cmocka_unit_test(test_derivatives),
         cmocka_unit_test(test_derivatives_at_the_ends),
         cmocka_unit_test(test_projection),
+        cmocka_unit_test(test_dot),
         cmocka_unit_test(test_broken_numbers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
