@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "basis/legendre.h"
 
-// One band from the two before it. Over all m at once, which is what the compiler makes vector instructions of.
-static void next_band(unsigned l, float x, float s, const float before[restrict], const float last[restrict],
-                      float out[restrict])
+// By columns, of one m each: a column is a chain of operations that wait for each other, and the machine has several
+// columns under way.
+void sheen_legendre(unsigned n, float x, float s, float first, float out[restrict])
 {
-    const float *restrict a = sheen_legendre_a + basis_zenith_index(l, 0);
-    const float *restrict b = sheen_legendre_b + basis_zenith_index(l, 0);
-    for (unsigned m = 0; m + 1 < l; ++m) out[m] = a[m] * x * last[m] - b[m] * before[m];
-    out[l - 1] = a[l - 1] * x * last[l - 1];
-    out[l] = a[l] * s * last[l - 1];
-}
-
-void sheen_legendre(unsigned n, float x, float s, float first, float out[])
-{
-    out[0] = first;
-    for (unsigned l = 1; l < n; ++l)
-        next_band(l, x, s, out + basis_zenith_index(l > 1 ? l - 2 : 0, 0), out + basis_zenith_index(l - 1, 0),
-                  out + basis_zenith_index(l, 0));
+    size_t diagonal = 0; // number of (m, m)
+    for (unsigned m = 0; m < n; ++m) {
+        float before = 0.0f, last = first;
+        size_t i = diagonal;
+        out[i] = first;
+        for (unsigned l = m + 1; l < n; ++l) {
+            i += l;
+            float next = sheen_legendre_a[i] * x * last - sheen_legendre_b[i] * before;
+            before = last;
+            out[i] = last = next;
+        }
+        diagonal += m + 2;
+        if (m + 1 < n) first *= sheen_legendre_a[diagonal] * s;
+    }
 }
 
 // Rounded once, from their formulas in double precision: products of rounded roots would cost a digit at order 32.

@@ -34,10 +34,10 @@ static unsigned width_of(unsigned n)
 {
     return n > 2 * NARROW ? WIDE : NARROW;
 }
-// Columns of a kind's matrix.
+// Columns of a kind's matrix, an even number: the last may be 0.
 static unsigned columns_of(unsigned l)
 {
-    return l / 2 + 1;
+    return l / 4 * 2 + 2;
 }
 static unsigned order_of(unsigned kind, unsigned k)
 {
@@ -108,45 +108,48 @@ typedef struct Turn {
 
 static void make_turn(unsigned n, Vec2 angle, Turn *t)
 {
-    float c = 1.0f, s = 0.0f;
+    float c[SHEEN_ORDER_MAX], s[SHEEN_ORDER_MAX];
+    rotation_powers(n, angle, c, s);
     memset(t, 0, sizeof *t);
     for (unsigned m = 0; m < n; ++m) {
-        t->c[m % 2][m / 2] = c;
-        t->s[m % 2][m / 2] = s;
-        float turned = c * angle.x - s * angle.y;
-        s = c * angle.y + s * angle.x;
-        c = turned;
+        t->c[m % 2][m / 2] = c[m];
+        t->s[m % 2][m / 2] = s[m];
     }
 }
 
-static inline void turn(unsigned width, const Turn *t, float v[restrict])
+// Even or odd m.
+static void turn_half(unsigned width, const float c[restrict], const float s[restrict], float cosine[restrict],
+                      float sine[restrict])
 {
-    float *even = v + COS_EVEN * width, *odd = v + COS_ODD * width;
     for (unsigned k = 0; k < width; ++k) {
-        float c = even[k], s = even[2 * width + k];
-        even[k] = c * t->c[0][k] - s * t->s[0][k];
-        even[2 * width + k] = c * t->s[0][k] + s * t->c[0][k];
-    }
-    for (unsigned k = 0; k < width; ++k) {
-        float c = odd[k], s = odd[2 * width + k];
-        odd[k] = c * t->c[1][k] - s * t->s[1][k];
-        odd[2 * width + k] = c * t->s[1][k] + s * t->c[1][k];
+        float turned = cosine[k] * c[k] - sine[k] * s[k];
+        sine[k] = cosine[k] * s[k] + sine[k] * c[k];
+        cosine[k] = turned;
     }
 }
 
-static inline void quarter(unsigned width, unsigned l, const float *restrict matrix, const float v[restrict],
-                           float out[restrict])
+static void turn(unsigned width, const Turn *t, float v[])
+{
+    turn_half(width, t->c[0], t->s[0], v + COS_EVEN * width, v + SIN_EVEN * width);
+    turn_half(width, t->c[1], t->s[1], v + COS_ODD * width, v + SIN_ODD * width);
+}
+
+// Two columns at once: their sums are in memory.
+static void quarter(unsigned width, unsigned l, const float *restrict matrix, const float v[restrict],
+                    float out[restrict])
 {
     for (unsigned kind = 0; kind < KINDS; ++kind) {
-        float sum[WIDE] = {0};
-        for (unsigned column = 0; column < columns_of(l); ++column, matrix += width)
-            for (unsigned k = 0; k < width; ++k) sum[k] += matrix[k] * v[kind * width + column];
-        for (unsigned k = 0; k < width; ++k) out[taken_to[l % 2][kind] * width + k] = sum[k];
+        float *restrict sum = out + taken_to[l % 2][kind] * width;
+        const float *restrict x = v + kind * width;
+        for (unsigned k = 0; k < width; ++k) sum[k] = matrix[k] * x[0] + matrix[width + k] * x[1];
+        matrix += 2 * width;
+        for (unsigned column = 2; column < columns_of(l); column += 2, matrix += 2 * width)
+            for (unsigned k = 0; k < width; ++k) sum[k] += matrix[k] * x[column] + matrix[width + k] * x[column + 1];
     }
 }
 
 // Loops over a constant width become a vector or two.
-static inline void rotate_bands(unsigned width, unsigned n, const float *matrix, const Turn turns[3], float v[])
+static void rotate_bands(unsigned width, unsigned n, const float *matrix, const Turn turns[3], float v[])
 {
     float half[KINDS * WIDE];
     for (unsigned l = 0; l < n; ++l) {
@@ -160,6 +163,32 @@ static inline void rotate_bands(unsigned width, unsigned n, const float *matrix,
     }
 }
 
+// Between the order of basis_index and four vectors a band.
+static void split(unsigned n, unsigned width, size_t stride, const float in[restrict], float v[restrict])
+{
+    for (unsigned l = 0; l < n; ++l, v += (size_t)KINDS * width) {
+        const float *plus = in + basis_index(l, 0) * stride, *minus = plus;
+        for (unsigned m = 0; m <= l; ++m, plus += stride, minus -= stride) {
+            float *at = v + m % 2 * width + m / 2;
+            at[0] = *plus;
+            at[2 * width] = *minus;
+        }
+        v[SIN_EVEN * width] = 0.0f;
+    }
+}
+
+static void join(unsigned n, unsigned width, size_t stride, const float v[restrict], float out[restrict])
+{
+    for (unsigned l = 0; l < n; ++l, v += (size_t)KINDS * width) {
+        float *plus = out + basis_index(l, 0) * stride, *minus = plus;
+        for (unsigned m = 0; m <= l; ++m, plus += stride, minus -= stride) {
+            const float *at = v + m % 2 * width + m / 2;
+            *minus = at[2 * width];
+            *plus = at[0]; // last: for m = 0 it is the one
+        }
+    }
+}
+
 void sheen_quarter_rotate(const SheenQuarter *q, unsigned n, const SheenEuler *e, unsigned stride, const float in[],
                           float out[])
 {
@@ -170,20 +199,10 @@ void sheen_quarter_rotate(const SheenQuarter *q, unsigned n, const SheenEuler *e
     make_turn(n, v2(-e->gamma.y, e->gamma.x), &turns[2]);
     float v[SHEEN_ORDER_MAX * KINDS * WIDE];
     memset(v, 0, (size_t)n * KINDS * width * sizeof *v);
-    for (unsigned l = 0; l < n; ++l)
-        for (unsigned m = 0; m <= l; ++m) {
-            float *band = v + ((size_t)l * KINDS + m % 2) * width + m / 2;
-            band[0] = in[basis_index(l, (int)m) * stride];
-            if (m > 0) band[2 * width] = in[basis_index(l, -(int)m) * stride];
-        }
+    split(n, width, stride, in, v);
     if (width == NARROW)
         rotate_bands(NARROW, n, q->matrix, turns, v);
     else
         rotate_bands(WIDE, n, q->matrix, turns, v);
-    for (unsigned l = 0; l < n; ++l)
-        for (unsigned m = 0; m <= l; ++m) {
-            const float *band = v + ((size_t)l * KINDS + m % 2) * width + m / 2;
-            out[basis_index(l, (int)m) * stride] = band[0];
-            if (m > 0) out[basis_index(l, -(int)m) * stride] = band[2 * width];
-        }
+    join(n, width, stride, v, out);
 }

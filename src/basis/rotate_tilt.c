@@ -14,8 +14,8 @@
 #include <string.h>
 
 enum {
-    TILE = 16, // rows of a matrix that are computed at once, stored column by column
-    BLOCK_MAX = SHEEN_TILT_ORDER_MAX * (SHEEN_TILT_ORDER_MAX + 1) / 2,
+    LANES = 8,
+    BLOCK_MAX = SHEEN_TILT_ORDER_MAX * (SHEEN_TILT_ORDER_MAX + 1) / 2 + LANES, // rows, with padding
     POINTS_MAX = 4 * SHEEN_TILT_ORDER_MAX
 };
 #define DEGREE ((float)(M_PI / 180))
@@ -29,9 +29,14 @@ static unsigned sines(unsigned n)
 {
     return n * (n - 1) / 2;
 }
+// A block is stored column by column, padded to whole vectors, and to a multiple of four columns, by zeros.
+static size_t padded_rows(unsigned rows)
+{
+    return (rows + LANES - 1) / LANES * LANES;
+}
 static size_t block_size(unsigned rows)
 {
-    return (size_t)(rows + TILE - 1) / TILE * TILE * rows;
+    return padded_rows(rows) * ((rows + 3) / 4 * 4);
 }
 static size_t matrix_size(unsigned n)
 {
@@ -85,21 +90,21 @@ static void make_rule(unsigned n, Rule *r)
     }
 }
 
-// Adds weight a b^T to a block.
+// Adds weight a b^T to a block. @param a, b  followed by zeros
 static void add_product(unsigned rows, float weight, const float a[restrict], const float b[restrict],
-                        float *restrict tiles)
+                        float *restrict matrix)
 {
-    for (unsigned first = 0; first < rows; first += TILE)
-        for (unsigned column = 0; column < rows; ++column, tiles += TILE) {
-            float factor = weight * b[column];
-            for (unsigned k = 0; k < TILE; ++k) tiles[k] += a[first + k] * factor;
-        }
+    size_t padded = padded_rows(rows);
+    for (unsigned column = 0; column < rows; ++column, matrix += padded) {
+        float factor = weight * b[column];
+        for (size_t k = 0; k < padded; ++k) matrix[k] += a[k] * factor;
+    }
 }
 
 static void fill_matrix(unsigned n, double beta, const Rule *across, const Rule *along, float matrix[])
 {
     float h[SHEEN_TILT_ORDER_MAX * SHEEN_TILT_ORDER_MAX];
-    float cosine[2][BLOCK_MAX + TILE] = {{0}}, sine[2][BLOCK_MAX + TILE] = {{0}};
+    float cosine[2][BLOCK_MAX] = {{0}}, sine[2][BLOCK_MAX] = {{0}};
     float *sine_block = matrix + block_size(cosines(n));
     for (unsigned i = 0; i < across->n; ++i)
         for (unsigned k = 0; k < along->n; ++k) {
@@ -116,9 +121,9 @@ static void fill_matrix(unsigned n, double beta, const Rule *across, const Rule 
         }
 }
 
-static void fill_identity(unsigned rows, float *tiles)
+static void fill_identity(unsigned rows, float *matrix)
 {
-    for (unsigned i = 0; i < rows; ++i) tiles[((size_t)(i / TILE) * rows + i) * TILE + i % TILE] = 1.0f;
+    for (unsigned i = 0; i < rows; ++i) matrix[i * padded_rows(rows) + i] = 1.0f;
 }
 
 SheenStatus sheen_tilt_create(unsigned n, float tilt_max, SheenTilt *out)
@@ -139,18 +144,16 @@ SheenStatus sheen_tilt_create(unsigned n, float tilt_max, SheenTilt *out)
 
 // ---- rotation ---------------------------------------------------------------------------------------------------
 
-// out = ((1 - t) a + t b) x
-static void multiply(unsigned rows, float t, const float *restrict a, const float *restrict b, const float x[restrict],
-                     float out[restrict])
+// Adds a block times factor x. Four columns at once: their sums are in memory.
+static void multiply(unsigned rows, const float *restrict matrix, float factor, const float x[restrict],
+                     float sum[restrict])
 {
-    for (unsigned first = 0; first < rows; first += TILE) {
-        float sum[2][TILE] = {{0}};
-        for (unsigned column = 0; column < rows; ++column, a += TILE, b += TILE)
-            for (unsigned k = 0; k < TILE; ++k) {
-                sum[0][k] += a[k] * x[column];
-                sum[1][k] += b[k] * x[column];
-            }
-        for (unsigned k = 0; k < TILE; ++k) out[first + k] = (1.0f - t) * sum[0][k] + t * sum[1][k];
+    size_t padded = padded_rows(rows);
+    for (unsigned column = 0; column < rows; column += 4, matrix += 4 * padded) {
+        const float *a = matrix, *b = a + padded, *c = b + padded, *d = c + padded;
+        float xa = factor * x[column], xb = factor * x[column + 1];
+        float xc = factor * x[column + 2], xd = factor * x[column + 3];
+        for (size_t k = 0; k < padded; ++k) sum[k] += (a[k] * xa + b[k] * xb) + (c[k] * xc + d[k] * xd);
     }
 }
 
@@ -172,11 +175,14 @@ void sheen_tilt_rotate(const SheenTilt *tilt, unsigned n, Vec2 beta, unsigned st
     unsigned entry = (unsigned)angle < tilt->degrees ? (unsigned)angle : tilt->degrees - 1;
     const float *a = tilt->matrix + entry * matrix_size(n), *b = a + matrix_size(n);
     size_t skip = block_size(cosines(n));
-    float cosine[2][BLOCK_MAX + TILE] = {{0}}, sine[2][BLOCK_MAX + TILE] = {{0}};
+    float cosine[2][BLOCK_MAX] = {{0}}, sine[2][BLOCK_MAX] = {{0}};
     split(n, stride, x, cosine[0], sine[0]);
     if (beta.y < 0.0f) half_turn(n, cosine[0], sine[0]);
-    multiply(cosines(n), angle - (float)entry, a, b, cosine[0], cosine[1]);
-    multiply(sines(n), angle - (float)entry, a + skip, b + skip, sine[0], sine[1]);
+    float t = angle - (float)entry;
+    multiply(cosines(n), a, 1.0f - t, cosine[0], cosine[1]);
+    multiply(cosines(n), b, t, cosine[0], cosine[1]);
+    multiply(sines(n), a + skip, 1.0f - t, sine[0], sine[1]);
+    multiply(sines(n), b + skip, t, sine[0], sine[1]);
     if (beta.y < 0.0f) half_turn(n, cosine[1], sine[1]);
     join(n, stride, cosine[1], sine[1], x);
 }

@@ -24,22 +24,33 @@ SheenEuler sheen_euler_between(const Frame *from, const Frame *to)
     return (SheenEuler){v2(v3_dot(y, from->b), v3_dot(y, from->t)), v2(column.z, s), gamma};
 }
 
+// With a constant number of channels, the innermost loop is none.
+static inline void turn(unsigned n, const float c[], const float s[], unsigned channels, const float in[], float out[])
+{
+    for (unsigned l = 0; l < n; ++l) {
+        const float *from = in + basis_index(l, 0) * channels;
+        float *to = out + basis_index(l, 0) * channels;
+        for (unsigned k = 0; k < channels; ++k) to[k] = from[k];
+        for (unsigned m = 1; m <= l; ++m)
+            for (unsigned k = 0; k < channels; ++k) {
+                ptrdiff_t minus = (ptrdiff_t)k - (ptrdiff_t)(m * channels);
+                float p = from[m * channels + k], q = from[minus];
+                to[m * channels + k] = p * c[m] - q * s[m];
+                to[minus] = p * s[m] + q * c[m];
+            }
+    }
+}
+
 void sheen_rotate_z(unsigned n, Vec2 angle, unsigned channels, const float in[], float out[])
 {
-    float c = 1.0f, s = 0.0f; // of m times the angle
-    for (unsigned m = 0; m < n; ++m) {
-        for (unsigned l = m; l < n; ++l) {
-            size_t plus = basis_index(l, (int)m) * channels, minus = basis_index(l, -(int)m) * channels;
-            for (unsigned k = 0; k < channels; ++k) {
-                float p = in[plus + k], q = in[minus + k];
-                out[minus + k] = m ? p * s + q * c : p;
-                out[plus + k] = m ? p * c - q * s : p;
-            }
-        }
-        float turned = c * angle.x - s * angle.y;
-        s = c * angle.y + s * angle.x;
-        c = turned;
-    }
+    float c[SHEEN_ORDER_MAX], s[SHEEN_ORDER_MAX];
+    rotation_powers(n, angle, c, s);
+    if (channels == 1)
+        turn(n, c, s, 1, in, out);
+    else if (channels == 3)
+        turn(n, c, s, 3, in, out);
+    else
+        turn(n, c, s, channels, in, out);
 }
 
 SheenStatus sheen_rotation_create(SheenBasis basis, unsigned n, float tilt_max, SheenRotation **out)

@@ -5,6 +5,17 @@
 
 #include "basis/rotation.h"
 
+/** Cosines and sines of m times an angle, m = 0 .. n - 1. */
+static inline void rotation_powers(unsigned n, Vec2 angle, float c[], float s[])
+{
+    c[0] = 1.0f;
+    s[0] = 0.0f;
+    for (unsigned m = 1; m < n; ++m) {
+        c[m] = c[m - 1] * angle.x - s[m - 1] * angle.y;
+        s[m] = c[m - 1] * angle.y + s[m - 1] * angle.x;
+    }
+}
+
 /** Matrices of quarter turns about y: a tilt is two of these among three turns about z. */
 typedef struct SheenQuarter {
     float *matrix;
