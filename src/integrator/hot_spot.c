@@ -57,6 +57,22 @@ static bool give_rays(const HotSpot *spot, float omega, SheenStrata strata, floa
     return true;
 }
 
+// Takes rays from all cones alike until no more are left than `most`. Densities are what the rays will be: a gather
+// that then left some out would lose light.
+static void limit_rays(uint32_t most, Guide *g)
+{
+    uint32_t sum = 0;
+    for (uint32_t i = 0; i < g->n; ++i) sum += g->cones[i].rays;
+    if (sum <= most) return;
+    float share = most > g->n ? (float)(most - g->n) / (float)(sum - g->n) : 0.0f;
+    for (uint32_t i = 0; i < g->n; ++i) {
+        Cone *c = &g->cones[i];
+        c->density /= (float)c->rays;
+        c->rays = 1 + (uint32_t)(share * (float)(c->rays - 1));
+        c->density *= (float)c->rays;
+    }
+}
+
 void sheen_guide_choose(const HotSpots *s, Vec3 p, const Frame *frame, SheenStrata strata, float mean, float error,
                         Guide *out)
 {
@@ -78,6 +94,7 @@ void sheen_guide_choose(const HotSpots *s, Vec3 p, const Frame *frame, SheenStra
             if (out->cones[j].rays < out->cones[least].rays) least = j;
         if (out->cones[least].rays < cone.rays) out->cones[least] = cone;
     }
+    limit_rays(strata_count(strata), out);
 }
 
 Vec3 sheen_cone_direction(const Cone *cone, Vec2 u)

@@ -52,7 +52,7 @@ typedef struct Guide {
 
 /**
  * Chooses the spots that would make a gather noisy: seen under less than some strata, but bright enough there to
- * matter.
+ * matter. All of them together get at most one ray a stratum.
  * @param mean    luminance of the mean radiance that the gather is expected to find; not learnt from its own rays
  * @param error   relative standard error that is sought
  */

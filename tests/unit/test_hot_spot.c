@@ -51,6 +51,30 @@ static void test_choice(void **state)
     assert_int_equal(g.n, 0);
 }
 
+// As many spots as there may be cones, each of which wants many rays: all together get no more than there are strata,
+// each still gets some, and the densities are those of the rays that are left.
+static void test_rays_are_limited(void **state)
+{
+    (void)state;
+    HotSpots s = {.n = SHEEN_CONES_MAX};
+    for (uint32_t i = 0; i < s.n; ++i) {
+        float phi = 2.0f * SHEEN_PI * (float)i / (float)s.n;
+        s.spots[i] = (HotSpot){v3(cosf(phi), sinf(phi), 1.0f), 0.03f, 1000.0f, 1};
+    }
+    Frame frame = frame_from_normal(v3(0, 0, 1));
+    Guide g;
+    sheen_guide_choose(&s, v3(0, 0, 0), &frame, strata, 1.0f, 0.02f, &g);
+    assert_int_equal(g.n, SHEEN_CONES_MAX);
+    uint32_t rays = 0;
+    for (uint32_t i = 0; i < g.n; ++i) {
+        rays += g.cones[i].rays;
+        float omega = 2.0f * SHEEN_PI * g.cones[i].sin2_max / (1.0f + sqrtf(1.0f - g.cones[i].sin2_max));
+        assert_true(g.cones[i].rays > 0);
+        assert_float_equal(g.cones[i].density * omega, (float)g.cones[i].rays, 1e-3f * (float)g.cones[i].rays);
+    }
+    assert_in_range(rays, SHEEN_CONES_MAX, strata_count(strata));
+}
+
 static HotSpots two_spots(void)
 {
     return (HotSpots){.n = 2, .spots = {{v3(1, 0, 1), 0.1f, 200.0f, 1}, {v3(1.05f, 0.1f, 1.1f), 0.12f, 100.0f, 1}}};
@@ -123,6 +147,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_near_hits_join),
         cmocka_unit_test(test_choice),
+        cmocka_unit_test(test_rays_are_limited),
         cmocka_unit_test(test_cone_density),
         cmocka_unit_test(test_guided_direction_is_unbiased),
     };
