@@ -4,16 +4,17 @@
 //     bench_radiance_gradients
 //
 // The gradient of krivanek2005-improved-radiance-gradients as printed takes basis and width of a cell at its jittered
-// sample; the library takes them at the walls. Each number is the length of (mean over repeated gathers - exact
-// gradient) over the length of the exact one, all coefficients together; the exact one is a quadrature, differentiated.
-// What stands in brackets is the same from an independent program (NumPy, other random numbers, as many repeats). The
-// noise that the mean leaves is a part of both.
+// sample; the library integrates the basis along the walls. Each number is the length of (mean over repeated gathers -
+// exact gradient) over the length of the exact one, all coefficients together; the exact one is a quadrature,
+// differentiated. What stands in brackets is the same from an independent program (NumPy, other random numbers, as many
+// repeats). The noise that the mean leaves is a part of both.
 //
 //     printed, per cell       each cell has jitter of its own
 //     printed, literal        one number for each ring and one for each sector, as the indices are printed
 //     cell center             basis and width at the center of the cell, jitter per cell
-//     walls, nearer           basis at the walls, which move by the smaller of two distances
-//     library                 walls; near distances by the mean of their inverses
+//     walls, nearer           basis at the middles of the walls, which move by the smaller of two distances
+//     walls, mean             the same; distances that are near each other by the mean of their inverses
+//     library                 the same, and integrals of the basis along the walls between sectors
 //     analytical, numerical   of krivanek2005-radiance-caching; blind to occlusion
 //
 // The scenes: a box without anything hidden, a bright sphere on black, a dark sphere under a bright ceiling.
@@ -22,33 +23,42 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { ORDER = 10, SIZES = 3, METHODS = 7 };
+enum { ORDER = 10, SIZES = 3, METHODS = 8 };
 static const unsigned rings[SIZES] = {16, 32, 64}, repeats[SIZES] = {100, 40, 12};
 
 typedef struct Method {
     const char *name;
     Jitter jitter;
     int walls;                         // a WallForm, or -1 for the library
+    bool mean;                         // of the inverses of near distances
     SheenGradient gradient;            // of the library
     double known[KIT_CASES][2][SIZES]; // of order 10 and 4; 0 where there is none
 } Method;
 
 static const Method methods[METHODS] = {
-    {"printed, per cell", JITTER_CELL, WALLS_PRINTED, SHEEN_GRADIENT_NONE, {{{1.54, 1.72, 1.30}, {.68, .71, .54}}}},
+    {"printed, per cell",
+     JITTER_CELL,
+     WALLS_PRINTED,
+     false,
+     SHEEN_GRADIENT_NONE,
+     {{{1.54, 1.72, 1.30}, {.68, .71, .54}}}},
     {"printed, literal",
      JITTER_RINGS_SECTORS,
      WALLS_PRINTED,
+     false,
      SHEEN_GRADIENT_NONE,
      {{{.28, .17, .08}, {.18, .10, .04}}}},
-    {"cell center", JITTER_CELL, WALLS_CENTER, SHEEN_GRADIENT_NONE, {{{.29, .16, .09}, {.17, .09, .04}}}},
+    {"cell center", JITTER_CELL, WALLS_CENTER, false, SHEEN_GRADIENT_NONE, {{{.29, .16, .09}, {.17, .09, .04}}}},
     {"walls, nearer",
      JITTER_CELL,
      WALLS_EDGE,
+     false,
      SHEEN_GRADIENT_NONE,
      {{{.20, .076, .027}, {.049, .021, .010}}, {{0}, {.147, .105, .078}}, {{0}, {.171, .113, .083}}}},
-    {"library", JITTER_CELL, -1, SHEEN_GRADIENT_STRATIFIED, {{{0}, {0, 0, .003}}}},
-    {"analytical", JITTER_CELL, -1, SHEEN_GRADIENT_ANALYTICAL, {{{0}}}},
-    {"numerical", JITTER_CELL, -1, SHEEN_GRADIENT_NUMERICAL, {{{0}}}},
+    {"walls, mean", JITTER_CELL, WALLS_EDGE, true, SHEEN_GRADIENT_NONE, {{{0}, {0, 0, .003}}}},
+    {"library", JITTER_CELL, -1, false, SHEEN_GRADIENT_STRATIFIED, {{{0}}}},
+    {"analytical", JITTER_CELL, -1, false, SHEEN_GRADIENT_ANALYTICAL, {{{0}}}},
+    {"numerical", JITTER_CELL, -1, false, SHEEN_GRADIENT_NUMERICAL, {{{0}}}},
 };
 
 typedef double Slopes[2][KIT_BASIS_MAX];
@@ -76,7 +86,7 @@ static void mean_slopes(const KitCase *c, const Method *m, int size, Slopes mean
         if (m->walls < 0)
             add_library(&g, m->gradient, one);
         else
-            kit_wall_gradient(&g, SHEEN_BASIS_HSH, ORDER, (WallForm)m->walls, false, one);
+            kit_wall_gradient(&g, SHEEN_BASIS_HSH, ORDER, (WallForm)m->walls, m->mean, one);
         for (int axis = 0; axis < 2; ++axis)
             for (int i = 0; i < ORDER * ORDER; ++i) mean[axis][i] += one[axis][i] / repeats[size];
     }

@@ -9,6 +9,8 @@
 // integrand is smooth in u and v, and a Gauss-Legendre rule gets it to the last bits of floats.
 #include "basis/rotation_tables.h"
 
+#include "math/quadrature.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -69,25 +71,10 @@ typedef struct Rule {
     double node[POINTS_MAX], weight[POINTS_MAX];
 } Rule;
 
-// Newton's method on the Legendre polynomial.
 static void make_rule(unsigned n, Rule *r)
 {
     r->n = n;
-    for (unsigned i = 0; i < n; ++i) {
-        double x = cos(M_PI * (i + 0.75) / (n + 0.5)), slope = 1.0;
-        for (int step = 0; step < 8; ++step) {
-            double before = 0.0, p = 1.0;
-            for (unsigned l = 1; l <= n; ++l) {
-                double next = ((2 * l - 1) * x * p - (l - 1) * before) / l;
-                before = p;
-                p = next;
-            }
-            slope = n * (x * p - before) / (x * x - 1);
-            x -= p / slope;
-        }
-        r->node[i] = 0.5 * (x + 1);
-        r->weight[i] = 1 / ((1 - x * x) * slope * slope);
-    }
+    sheen_quadrature_gauss(n, r->node, r->weight);
 }
 
 // Adds weight a b^T to a block. @param a, b  followed by zeros

@@ -3,12 +3,21 @@
 
 #include "gather/estimate.h"
 #include "gather/radiance_gradient.h"
+#include "math/quadrature.h"
 
 #include <stdlib.h>
 
 static const double pi = 3.141592653589793;
 
 // ---- tables -----------------------------------------------------------------------------------------------------
+
+enum { NODES_MAX = 2 * SHEEN_ORDER_MAX + 8 };
+
+/** A rule for integrals over [0, 1]. */
+typedef struct Rule {
+    unsigned n;
+    double node[NODES_MAX], weight[NODES_MAX];
+} Rule;
 
 // cos(m phi), m = 0 .. n, and sin(m phi), m = 1 .. n.
 static void fill_turns(unsigned n, double phi, float out[])
@@ -19,10 +28,37 @@ static void fill_turns(unsigned n, double phi, float out[])
     }
 }
 
-static void fill_zenith(const SheenRadianceTables *t, double cos_theta, double weight, float out[])
+// Adds the zenith factors at one angle.
+static void add_zenith(const SheenRadianceTables *t, double theta, double weight, double sum[SHEEN_ZENITH_MAX])
 {
-    sheen_basis_zenith(t->basis, t->n, (float)cos_theta, out);
-    for (unsigned i = 0; i < t->n * (t->n + 1) / 2; ++i) out[i] = (float)(weight * (double)out[i]);
+    float factor[SHEEN_ZENITH_MAX];
+    sheen_basis_zenith(t->basis, t->n, (float)cos(theta), factor);
+    for (unsigned i = 0; i < t->n * (t->n + 1) / 2; ++i) sum[i] += weight * (double)factor[i];
+}
+
+static void put_zenith(const SheenRadianceTables *t, const double sum[], float out[])
+{
+    for (unsigned i = 0; i < t->n * (t->n + 1) / 2; ++i) out[i] = (float)sum[i];
+}
+
+// A wall to the ring before, at one angle.
+static void fill_wall(const SheenRadianceTables *t, double theta, float out[])
+{
+    double sum[SHEEN_ZENITH_MAX] = {0};
+    add_zenith(t, theta, 2.0 * pi / t->strata.sectors * cos(theta) * sin(theta), sum);
+    put_zenith(t, sum, out);
+}
+
+// A wall to the sector before, from one angle to the other. Hemispherical factors of m = 1 have a root of cos(theta):
+// angles that are squares from the lower end take it away.
+static void fill_ring(const SheenRadianceTables *t, const Rule *rule, double upper, double lower, float out[])
+{
+    double sum[SHEEN_ZENITH_MAX] = {0}, width = lower - upper;
+    for (unsigned i = 0; i < rule->n; ++i) {
+        double u = rule->node[i];
+        add_zenith(t, lower - width * u * u, width * 2.0 * u * rule->weight[i], sum);
+    }
+    put_zenith(t, sum, out);
 }
 
 static void fill_tables(const SheenRadianceTables *t)
@@ -33,10 +69,12 @@ static void fill_tables(const SheenRadianceTables *t)
         fill_turns(t->n, 2.0 * pi * (k + 0.5) / N, t->middle + k * turns);
         fill_turns(t->n, 2.0 * pi * k / N, t->edge + k * turns);
     }
+    Rule rule = {.n = 2 * t->n + 8}; // more than the turns of the factors ask for, even of one ring
+    sheen_quadrature_gauss(rule.n, rule.node, rule.weight);
     for (unsigned j = 0; j < M; ++j) {
-        double upper = 1.0 - (double)j / M, lower = 1.0 - (double)(j + 1) / M, middle = 1.0 - (j + 0.5) / M;
-        fill_zenith(t, upper, 2.0 * pi / N * upper * sqrt(1.0 - upper * upper), t->wall + j * zeniths);
-        fill_zenith(t, middle, acos(lower) - acos(upper), t->ring + j * zeniths);
+        double upper = acos(1.0 - (double)j / M), lower = acos(1.0 - (double)(j + 1) / M);
+        fill_wall(t, upper, t->wall + j * zeniths);
+        fill_ring(t, &rule, upper, lower, t->ring + j * zeniths);
     }
 }
 

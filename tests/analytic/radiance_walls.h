@@ -72,12 +72,25 @@ static inline RadianceSamples kit_samples(const KitGather *g)
 typedef enum WallForm {
     WALLS_PRINTED, // at the sample, where 1 / (M sin(theta)) is the width
     WALLS_CENTER,  // the same at the center of the cell
-    WALLS_EDGE     // at the middle of each wall, and the width that it has
+    WALLS_EDGE,    // at the middle of each wall, and the width that it has
+    WALLS_INTEGRAL // the same, and the integral along the walls between sectors
 } WallForm;
 
 static inline double kit_approach(double a, double b, bool mean)
 {
     return mean && fmax(a, b) < 1.5 * fmin(a, b) ? 0.5 * (a + b) : fmax(a, b);
+}
+
+/** Integral of the basis from one zenith angle to another. */
+static inline void kit_wall_integral(const Gauss *gauss, SheenBasis basis, unsigned n, double from, double to,
+                                     double phi, double out[KIT_BASIS_MAX])
+{
+    memset(out, 0, KIT_BASIS_MAX * sizeof *out);
+    for (int i = 0; i < KIT_NODES; ++i) {
+        double u = gauss->x[i], b[KIT_BASIS_MAX];
+        kit_basis(basis, n, cos(to - (to - from) * u * u), phi, b);
+        for (unsigned c = 0; c < n * n; ++c) out[c] += 2.0 * u * gauss->w[i] * (to - from) * b[c];
+    }
 }
 
 /**
@@ -89,6 +102,9 @@ static inline void kit_wall_gradient(const KitGather *g, SheenBasis basis, unsig
 {
     const double two_pi = 6.283185307179586;
     unsigned M = g->strata.rings, N = g->strata.sectors;
+    bool at_wall = form == WALLS_EDGE || form == WALLS_INTEGRAL;
+    Gauss gauss;
+    kit_gauss(&gauss);
     memset(out, 0, 2 * sizeof out[0]);
     for (unsigned k = 0; k < N; ++k)
         for (unsigned j = 0; j < M; ++j) {
@@ -98,9 +114,13 @@ static inline void kit_wall_gradient(const KitGather *g, SheenBasis basis, unsig
             double z = form == WALLS_PRINTED ? g->cos_theta[i] : center;
             double phi = form == WALLS_PRINTED ? g->phi[i] : middle;
             double at_ring[KIT_BASIS_MAX], at_sector[KIT_BASIS_MAX];
-            kit_basis(basis, n, form == WALLS_EDGE ? upper : z, form == WALLS_EDGE ? middle : phi, at_ring);
-            kit_basis(basis, n, z, form == WALLS_EDGE ? edge : phi, at_sector);
-            double width = form == WALLS_EDGE ? acos(fmax(0.0, lower)) - acos(upper) : 1.0 / (M * sqrt(1.0 - z * z));
+            kit_basis(basis, n, at_wall ? upper : z, at_wall ? middle : phi, at_ring);
+            kit_basis(basis, n, z, at_wall ? edge : phi, at_sector);
+            double width = at_wall ? acos(fmax(0.0, lower)) - acos(upper) : 1.0 / (M * sqrt(1.0 - z * z));
+            if (form == WALLS_INTEGRAL) {
+                kit_wall_integral(&gauss, basis, n, acos(upper), acos(fmax(0.0, lower)), edge, at_sector);
+                width = 1.0;
+            }
             double u = 0.0, v = width * kit_approach(g->inverse[i], g->inverse[sector], mean) *
                                 (g->radiance[i] - g->radiance[sector]);
             if (j)
