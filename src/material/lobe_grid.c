@@ -89,12 +89,11 @@ void sheen_lobe_taps(const LobeTable *t, Vec3 wo, float alpha, LobeTaps *out)
         add_level(t, &x, &y, 0, 1.0f, out);
         return;
     }
-    // Between the levels, linear in the logarithm of the roughness. Below the last of a table that was cut there is
-    // nothing. Above the first is nothing that the textures have, but for pictures beyond 1.
+    // Between the levels, linear in the logarithm of the roughness. There is nothing below the last, at which the share
+    // has come to nothing, and above the first, which pictures with numbers beyond 1 have alone.
     float level = (t->log_alpha - logf(alpha)) / t->log_step, end = (float)(t->n_levels - 1);
     if (!(level >= -0.01f && level <= end + 0.01f)) out->fade = 0.0f;
     level = clampf(level, 0.0f, end);
-    if (t->cut) out->fade *= smoothstep(end - level);
     unsigned i = (unsigned)level;
     if (i + 1 >= t->n_levels) i = t->n_levels - 2;
     add_level(t, &x, &y, i, 1.0f - (level - (float)i), out);

@@ -18,7 +18,6 @@ typedef struct LobeTable {
     unsigned last;             // steps of the radius
     unsigned n_nodes;          // of a level
     unsigned n_levels;         // of roughness, the largest first; 0 where no order will do
-    bool cut;                  // no order represents the last level, or what would come behind it
     float log_alpha, log_step; // logarithm of the first level's roughness, and how much less it is at the next
     float *data[2];            // [n_levels][n_nodes][node.size] of each basis
     unsigned order[2];         // the largest that a reading may have, of each basis

@@ -115,8 +115,8 @@ static float error_of(const LobeNode *node, const float *at, unsigned shape, uns
     return energy > 0.0f ? at[node->missing + n * node->n_pairs + pair] / energy : 1.0f;
 }
 
-// Seen from the normal most lobes are easiest to represent, being round; it is found with one node whether a level is
-// hopeless. Twice the error leaves room for those that are easier from elsewhere.
+// Two views tell whether a level is hopeless: from the normal, where most lobes are easiest to represent, being round,
+// and from 60 degrees for those that are not there at the normal. Both err on the side of filling a table in vain.
 static void probe(void *user, size_t i, unsigned worker)
 {
     (void)worker;
@@ -124,10 +124,13 @@ static void probe(void *user, size_t i, unsigned worker)
     Item *item = &w->items[i];
     const LobeTable *t = &w->all->tables[item->table];
     BsdfLobe prototype = prototype_of(t, item->level);
-    float hsh[NODE_MAX], sh[NODE_MAX], *const out[2] = {hsh, sh};
-    sheen_lobe_project(w->quadrature, &t->node, &t->family, &prototype, v3(0.0f, 0.0f, 1.0f), out);
-    item->good = error_of(&t->node, hsh, 0, t->node.n) <= 2.0f * w->all->error ||
-                 error_of(&t->node, sh, 0, t->node.n) <= 2.0f * w->all->error;
+    const Vec3 views[2] = {{0.0f, 0.0f, 1.0f}, {0.8660254f, 0.0f, 0.5f}};
+    float hsh[NODE_MAX], sh[NODE_MAX], *const out[2] = {hsh, sh}, allowed = 1.25f * w->all->error;
+    for (int k = 0; k < 2 && !item->good; ++k) {
+        sheen_lobe_project(w->quadrature, &t->node, &t->family, &prototype, views[k], out);
+        item->good =
+            error_of(&t->node, hsh, 0, t->node.n) <= allowed || error_of(&t->node, sh, 0, t->node.n) <= allowed;
+    }
 }
 
 static void fill(void *user, size_t i, unsigned worker)
@@ -174,7 +177,6 @@ static void cut_levels(const Work *w)
         unsigned good = 0, n = t->n_levels;
         while (good < n && item[good].good) ++good;
         item += n;
-        t->cut = good < n;
         t->n_levels = good == 0 ? 0 : good < n ? good + 1 : n;
     }
 }
