@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // `sheen info`: what a scene or image file holds. Everything is collected as JSON; the text is the same, line by line.
+#include "brdf_order.h"
 #include "cli.h"
 #include "exr_header.h"
 #include "json_text.h"
 #include "render_options.h"
 #include "report.h"
 
+#include "basis/basis.h"
 #include "image/image.h"
 #include "io/load.h"
 
@@ -15,6 +17,7 @@
 
 typedef struct InfoValues {
     TextList defines;
+    BrdfOrderOptions brdf;
     bool json, strict;
 } InfoValues;
 
@@ -27,6 +30,36 @@ static const Option info_options[] = {
      .standard = "what the scene says",
      .example = "sheen info -D spp=64 scene.xml",
      .offset = offsetof(InfoValues, defines)},
+    {.kind = OPTION_TEXT,
+     .name = "brdf-order",
+     .argument = "FILE",
+     .meaning =
+         "Draw how a scene's glossy materials are represented in hemispherical harmonics, and print it: for each "
+         "its name, the least and largest order, the mean error, and the part of the outgoing directions for "
+         "which it is cached. The picture has a row for each material, at most 64: the disk of outgoing "
+         "directions coloured by error and by order, blue for none to red for the largest allowed, dark where "
+         "the material is sampled; and along the disk's middle the order as bars, the error as points.",
+     .standard = "none",
+     .example = "sheen info --brdf-order orders.png scene.xml",
+     .offset = offsetof(InfoValues, brdf.picture)},
+    {.kind = OPTION_COUNT,
+     .name = "order",
+     .argument = "N",
+     .meaning = "The largest order for --brdf-order.",
+     .standard = "10",
+     .example = "sheen info --brdf-order orders.png --order 16 scene.xml",
+     .min = 1,
+     .max = SHEEN_ORDER_MAX,
+     .offset = offsetof(InfoValues, brdf.order)},
+    {.kind = OPTION_NUMBER,
+     .name = "brdf-error",
+     .argument = "E",
+     .meaning = "The largest error for --brdf-order: energy that is missing.",
+     .standard = "0.05",
+     .example = "sheen info --brdf-order orders.png --brdf-error 0.01 scene.xml",
+     .min = 0.001,
+     .max = 0.5,
+     .offset = offsetof(InfoValues, brdf.error)},
     {.kind = OPTION_FLAG,
      .name = "json",
      .meaning = "One JSON object for machines instead of text.",
@@ -228,12 +261,15 @@ static bool is_image(const char *path)
 
 static int run_info(int argc, char **argv)
 {
-    InfoValues values = {0};
+    InfoValues values = {.brdf = {.order = 10, .error = 0.05}};
     int code;
     if (!cli_parse(&command_info, &argc, argv, &values, &code)) return code;
     if (argc < 2) return cli_usage_error(&command_info, "FILE: the file is missing");
     if (argc > 2) return cli_usage_error(&command_info, "FILE: '%s' is one file too many", argv[2]);
     if (!defines_check(&command_info, &values.defines)) return CLI_USAGE;
+    if (values.brdf.picture && !sheen_image_writable_format(values.brdf.picture))
+        return cli_usage_error(&command_info, "--brdf-order: '%s' has no ending of a picture that can be written",
+                               values.brdf.picture);
     const char *path = argv[1];
     Report report = {.strict = values.strict};
     SheenLog log = report_log(&report);
@@ -249,9 +285,12 @@ static int run_info(int argc, char **argv)
             &report, sheen_scene_load_with(path, (SheenDefines){values.defines.items, values.defines.n}, &log, &scene),
             path);
         if (code == CLI_DONE) info = scene_json(path, scene);
+        if (code == CLI_DONE && values.brdf.picture) code = brdf_order_report(scene, &values.brdf, &report, info);
         sheen_scene_destroy(&scene);
     }
-    return code == CLI_DONE ? print_info(info, values.json) : code;
+    if (code == CLI_DONE) return print_info(info, values.json);
+    json_decref(info);
+    return code;
 }
 
 const Command command_info = {
