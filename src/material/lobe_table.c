@@ -9,7 +9,7 @@
 
 enum {
     ORDER_DEFAULT = 10,
-    MEMORY_MAX = 64 << 20,
+    MEMORY_DEFAULT = 64 << 20,
     NODE_MAX = LOBE_SHAPES_MAX * SHEEN_BASIS_MAX + (SHEEN_ORDER_MAX + 1) * LOBE_SHAPES_MAX * (LOBE_SHAPES_MAX + 1) / 2
 };
 #define ERROR_DEFAULT 0.05f
@@ -181,14 +181,14 @@ static void cut_levels(const Work *w)
     }
 }
 
-static SheenStatus allocate(const SheenLog *log, SheenLobeTables *all)
+static SheenStatus allocate(const SheenLog *log, SheenLobeTables *all, size_t memory)
 {
     size_t used = 0;
     for (uint32_t i = 0; i < all->n_tables; ++i) {
         LobeTable *t = &all->tables[i];
         size_t floats = (size_t)t->n_levels * t->n_nodes * t->node.size, bytes = 2 * floats * sizeof(float);
         if (bytes == 0) continue;
-        if (bytes > MEMORY_MAX - used) {
+        if (bytes > memory - used) {
             sheen_info(log, "%s: no room for the harmonics of a lobe of material '%s': it is sampled", all->scene->name,
                        t->family.material->name);
             t->n_levels = 0;
@@ -244,7 +244,8 @@ static bool material_has(const SheenLobeTables *all, uint32_t material)
     }
 }
 
-static SheenStatus build(const SheenLog *log, SheenLobeTables *all, SheenPool *pool, const atomic_bool *cancel)
+static SheenStatus build(const SheenLog *log, SheenLobeTables *all, size_t memory, SheenPool *pool,
+                         const atomic_bool *cancel)
 {
     SheenStatus status = find_all_lobes(all);
     if (status || all->n_tables == 0) return status;
@@ -254,7 +255,7 @@ static SheenStatus build(const SheenLog *log, SheenLobeTables *all, SheenPool *p
     status = run_items(&work, false, pool, cancel);
     if (!status) {
         cut_levels(&work);
-        status = allocate(log, all);
+        status = allocate(log, all, memory);
     }
     if (!status) status = run_items(&work, true, pool, cancel);
     free(work.items);
@@ -278,7 +279,9 @@ SheenStatus sheen_lobe_tables_create(const SheenLog *log, const SheenScene *scen
     *all = (SheenLobeTables){.scene = scene, .n = n, .error = error};
     all->slots = calloc((size_t)scene->n_materials + 1, sizeof *all->slots);
     all->has = calloc((size_t)scene->n_materials + 1, sizeof *all->has);
-    SheenStatus status = all->slots && all->has ? build(log, all, pool, cancel) : SHEEN_ERR_NOMEM;
+    SheenStatus status = all->slots && all->has
+                             ? build(log, all, desc->memory ? desc->memory : MEMORY_DEFAULT, pool, cancel)
+                             : SHEEN_ERR_NOMEM;
     if (status) sheen_lobe_tables_destroy(&all);
     *out = all;
     return status;

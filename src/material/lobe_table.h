@@ -19,11 +19,12 @@ typedef struct SheenLobeTables SheenLobeTables;
 typedef struct SheenLobeTableDesc {
     unsigned order; // largest, 1 .. SHEEN_ORDER_MAX; 0 means 10
     float error;    // largest relative energy 1 - sum c^2 / ||f||^2 that may be missing, (0, 0.5]; 0 means 0.05
+    size_t memory;  // bytes that the tables may take; 0 means 64 MB
 } SheenLobeTableDesc;
 
 /**
- * Tabulates the lobes. What is alike in several materials is tabulated once; the tables take 64 MB at most, lobes for
- * which there is no room are not represented, which is told as information.
+ * Tabulates the lobes. What is alike in several materials is tabulated once; lobes for which there is no room are
+ * not represented, which is told as information.
  * @param scene   borrowed, must outlive the tables
  * @param pool    runs the work; the result does not depend on its size
  * @param cancel  may be NULL

@@ -396,6 +396,31 @@ static void test_what_is_not_represented(void **state)
     destroy(&f);
 }
 
+static void test_memory_is_bounded(void **state)
+{
+    (void)state;
+    Fixture f = fixture(BSDF("blendbsdf", BSDF("phong", F(exponent, 9)) BSDF("phong", F(exponent, 8))), 0, 0);
+    Bsdf b = bsdf_at(f.scene, v2(0, 0));
+    SheenPool *pool;
+    assert_int_equal(b.n_lobes, 4);
+    assert_int_equal(sheen_pool_create(1, &pool), SHEEN_OK);
+    // For none of the two tables, one, both: 27 directions of 66 numbers in two bases are 14,256 bytes.
+    const size_t memory[] = {14255, 14256, 28512};
+    for (int room = 0; room < 3; ++room) {
+        Rgb c[100];
+        LobeReading reading;
+        SheenLobeTables *tables;
+        const SheenLobeTableDesc desc = {.memory = memory[room]};
+        assert_int_equal(sheen_lobe_tables_create(NULL, f.scene, &desc, pool, NULL, &tables), SHEEN_OK);
+        sheen_lobe_table_read(tables, SHEEN_BASIS_HSH, &b, v3(0, 0, 1), c, &reading);
+        assert_int_equal((reading.share[1] > 0) + (reading.share[3] > 0), room);
+        assert_int_equal(sheen_lobe_tables_order(tables) > 0, room > 0);
+        sheen_lobe_tables_destroy(&tables);
+    }
+    sheen_pool_destroy(&pool);
+    destroy(&f);
+}
+
 static void test_numbers_out_of_range(void **state)
 {
     (void)state;
@@ -403,7 +428,7 @@ static void test_numbers_out_of_range(void **state)
     SheenPool *pool;
     SheenLobeTables *tables;
     atomic_bool cancel = true;
-    const SheenLobeTableDesc bad[] = {{33, 0}, {0, 0.51f}, {0, -0.1f}, {0, NAN}}, good = {0};
+    const SheenLobeTableDesc bad[] = {{.order = 33}, {.error = 0.51f}, {.error = -0.1f}, {.error = NAN}}, good = {0};
     assert_int_equal(sheen_pool_create(1, &pool), SHEEN_OK);
     for (int i = 0; i < 4; ++i)
         assert_int_equal(sheen_lobe_tables_create(NULL, f.scene, &bad[i], pool, NULL, &tables), SHEEN_ERR_INVALID);
@@ -420,7 +445,8 @@ int main(void)
         cmocka_unit_test(test_orders_of_phong),          cmocka_unit_test(test_stricter_errors),
         cmocka_unit_test(test_readings_are_continuous),  cmocka_unit_test(test_roughness_between_levels),
         cmocka_unit_test(test_what_is_not_represented),  cmocka_unit_test(test_numbers_out_of_range),
-        cmocka_unit_test(test_threads_do_not_matter),    cmocka_unit_test(test_shares_leave_the_rest),
+        cmocka_unit_test(test_memory_is_bounded),        cmocka_unit_test(test_threads_do_not_matter),
+        cmocka_unit_test(test_shares_leave_the_rest),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
