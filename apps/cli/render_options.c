@@ -3,6 +3,7 @@
 
 #include "json_text.h"
 
+#include "basis/rotation.h"
 #include "image/image.h"
 #include "io/defines.h"
 
@@ -11,15 +12,21 @@
 static const Choice integrators[] = {
     {"irradiance", SHEEN_INTEGRATOR_IRRADIANCE},
     {"path", SHEEN_INTEGRATOR_PATH},
-    {"radiance", CHOICE_LATER},
+    {"radiance", SHEEN_INTEGRATOR_RADIANCE},
     {"light-vectors", CHOICE_LATER},
     {0},
 };
 static const Choice gradients[] = {
-    {"stratified", SHEEN_GRADIENTS_STRATIFIED},
-    {"none", SHEEN_GRADIENTS_NONE},
-    {"numerical", CHOICE_LATER},
-    {"analytical", CHOICE_LATER},
+    {"stratified", SHEEN_GRADIENT_STRATIFIED},
+    {"analytical", SHEEN_GRADIENT_ANALYTICAL},
+    {"numerical", SHEEN_GRADIENT_NUMERICAL},
+    {"none", SHEEN_GRADIENT_NONE},
+    {0},
+};
+static const Choice bases[] = {
+    {"auto", SHEEN_BASIS_AUTO},
+    {"hsh", SHEEN_BASIS_ALL_HSH},
+    {"sh", SHEEN_BASIS_ALL_SH},
     {0},
 };
 static const Choice secondaries[] = {
@@ -73,10 +80,11 @@ const Option render_options[] = {
     {.kind = OPTION_CHOICE,
      .name = "integrator",
      .argument = "NAME",
-     .meaning = "How light is found. irradiance: indirect light on diffuse surfaces from a cache of irradiance "
-                "records, mirrors and glass followed. path: the unbiased reference, path tracing with next-event "
-                "estimation and multiple importance sampling.",
-     .standard = "irradiance",
+     .meaning = "How light is found. radiance: indirect light on diffuse surfaces from a cache of irradiance records, "
+                "on glossy ones from radiance records where harmonics hold their lobes, by samples where not; mirrors "
+                "and glass are followed. irradiance: the same with samples for all that is glossy. path: the unbiased "
+                "reference, path tracing with next-event estimation and multiple importance sampling.",
+     .standard = "radiance",
      .example = "--integrator path",
      .choices = integrators,
      .recorded = true,
@@ -188,13 +196,44 @@ const Option render_options[] = {
      FIELD(gather_rays)},
     {.kind = OPTION_CHOICE,
      .name = "gradients",
-     .argument = "stratified|none",
-     .meaning = "Gradients with which records are interpolated: from the strata of the gather, or none.",
+     .argument = "KIND",
+     .meaning = "Gradients with which records are interpolated. stratified: from the strata of the gather. analytical, "
+                "numerical: of radiance records by derivatives of what the rays hit, blind for what comes into view; "
+                "of irradiance stratified. none.",
      .standard = "stratified",
      .example = "--gradients none",
      .choices = gradients,
      .recorded = true,
      FIELD(gradients)},
+    {.kind = OPTION_COUNT,
+     .name = "order",
+     .argument = "N",
+     .meaning = "Of radiance records and glossy lobes: the largest order of the harmonics, of N * N coefficients.",
+     .standard = "10",
+     .example = "--order 6",
+     .recorded = true,
+     RANGE(1, SHEEN_TILT_ORDER_MAX),
+     FIELD(order)},
+    {.kind = OPTION_NUMBER,
+     .name = "brdf-error",
+     .argument = "E",
+     .meaning = "The largest share of a glossy lobe's energy that harmonics may miss. Where they miss more, light is "
+                "sampled; where they miss more than half of that, both share the lobe.",
+     .standard = "0.05",
+     .example = "--brdf-error 0.02",
+     .recorded = true,
+     RANGE(0.001, 0.5),
+     FIELD(brdf_error)},
+    {.kind = OPTION_CHOICE,
+     .name = "basis",
+     .argument = "auto|hsh|sh",
+     .meaning = "Basis of the radiance records: hemispherical harmonics in each record's frame, or spherical ones in "
+                "the world's. auto: hemispherical on flat surfaces, spherical on curved ones.",
+     .standard = "auto",
+     .example = "--basis sh",
+     .choices = bases,
+     .recorded = true,
+     FIELD(basis)},
     {.kind = OPTION_CHOICE,
      .name = "secondary",
      .argument = "cache|path",
@@ -307,7 +346,7 @@ RenderValues render_values_default(void)
 {
     SheenOptions o = sheen_options_default();
     return (RenderValues){
-        .integrator = SHEEN_INTEGRATOR_IRRADIANCE,
+        .integrator = SHEEN_INTEGRATOR_RADIANCE,
         .light_samples = o.light_samples,
         .bounces = o.bounces,
         // The nearest decimal, so that statistics say 0.15 and not what a float makes of it.
@@ -315,6 +354,9 @@ RenderValues render_values_default(void)
         .accuracy = (double)(int)(o.accuracy * 1e4f + 0.5f) / 1e4,
         .gather_rays = o.gather_rays,
         .gradients = (int)o.gradients,
+        .order = o.order,
+        .brdf_error = (double)(int)(o.brdf_error * 1e4f + 0.5f) / 1e4,
+        .basis = (int)o.basis,
         .secondary = (int)o.secondary,
         .neighbor_clamping = o.neighbor_clamping,
         .gradient_clamping = o.gradient_clamping,
@@ -386,7 +428,10 @@ SheenRenderSettings render_values_settings(RenderValues *values, const SheenCame
     o.noise = (float)values->noise;
     o.accuracy = (float)values->accuracy;
     o.gather_rays = values->gather_rays;
-    o.gradients = (SheenGradients)values->gradients;
+    o.gradients = (SheenGradient)values->gradients;
+    o.order = values->order;
+    o.brdf_error = (float)values->brdf_error;
+    o.basis = (SheenBasisChoice)values->basis;
     o.secondary = (SheenSecondary)values->secondary;
     o.neighbor_clamping = values->neighbor_clamping != 0;
     o.gradient_clamping = values->gradient_clamping != 0;

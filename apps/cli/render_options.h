@@ -22,7 +22,9 @@ typedef struct RenderValues {
     double noise;
     double accuracy;
     uint32_t gather_rays;
-    int gradients, secondary; // SheenGradients, SheenSecondary
+    int gradients, basis, secondary; // SheenGradient, SheenBasisChoice, SheenSecondary
+    uint32_t order;
+    double brdf_error;
     int neighbor_clamping, gradient_clamping;
     unsigned aovs; // bit 1 << SheenAov
     double exposure;

@@ -28,19 +28,20 @@ static json_t *rays_json(const SheenStats *s)
                      "specular", (json_int_t)s->rays_specular);
 }
 
-// "irradiance" counts the records that the picture reads, "deep" those of the light beyond the first bounce.
+// "irradiance" and "radiance" count the records that the picture reads, "deep" those of the light beyond the first
+// bounce.
 static json_t *records_json(const SheenStats *s)
 {
-    return json_pack("{s:I, s:i, s:i, s:I, s:i, s:I, s:i}", "irradiance", (json_int_t)s->records, "radiance", 0,
-                     "light_vector", 0, "deep", (json_int_t)s->deep_records, "reused", 0, "new",
-                     (json_int_t)(s->records + s->deep_records), "deleted", 0);
+    return json_pack("{s:I, s:I, s:i, s:I, s:i, s:I, s:i}", "irradiance", (json_int_t)s->records, "radiance",
+                     (json_int_t)s->radiance_records, "light_vector", 0, "deep", (json_int_t)s->deep_records, "reused",
+                     0, "new", (json_int_t)(s->records + s->radiance_records + s->deep_records), "deleted", 0);
 }
 
 char *stats_to_json(const RenderValues *values, const RunStats *run)
 {
     const SheenStats *s = &run->render;
-    json_t *frame =
-        json_pack("{s:i, s:f, s:I}", "frame", 0, "time", run->times.total, "records", (json_int_t)s->records);
+    json_t *frame = json_pack("{s:i, s:f, s:I}", "frame", 0, "time", run->times.total, "records",
+                              (json_int_t)(s->records + s->radiance_records));
     json_t *object = json_pack(
         "{s:s, s:o, s:s, s:[I, I], s:i, s:I, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I, s:f, s:I, s:[o]}", "version",
         SHEEN_VERSION, "scene", json_text(run->scene), "integrator", render_integrator_name(values), "size",

@@ -134,12 +134,12 @@ static void find_points(Bench *b)
         Tile tile = sheen_tile(&b->work, i);
         if (!sheen_visibility_trace(&b->work, &tile, (SampleRange){0, 1, NULL}, NULL, &v, &stats))
             fail("out of memory");
-        if (v.n_points == 0) continue;
-        ShadingPoint *more = realloc(all, (n + v.n_points) * sizeof *all);
+        if (v.seen.n_points == 0) continue;
+        ShadingPoint *more = realloc(all, (n + v.seen.n_points) * sizeof *all);
         if (!more) fail("out of memory");
         all = more;
-        memcpy(all + n, v.points, v.n_points * sizeof *all);
-        n += v.n_points;
+        memcpy(all + n, v.seen.points, v.seen.n_points * sizeof *all);
+        n += v.seen.n_points;
     }
     b->n_points = n < N_POINTS ? n : N_POINTS;
     for (size_t i = 0; i < b->n_points; ++i) b->points[i] = all[i * n / b->n_points];

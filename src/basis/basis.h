@@ -25,6 +25,7 @@ enum {
 
 /** One of the two bases. */
 typedef enum SheenBasis { SHEEN_BASIS_HSH, SHEEN_BASIS_SH } SheenBasis;
+enum { SHEEN_BASIS_COUNT = 2 };
 
 static inline size_t basis_size(unsigned n)
 {

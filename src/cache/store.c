@@ -13,6 +13,7 @@ SheenStatus sheen_store_create(float accuracy, bool neighbor_clamping, const Bou
     if (!s) return SHEEN_ERR_NOMEM;
     s->accuracy = accuracy;
     s->neighbor_clamping = neighbor_clamping;
+    s->cos_min = -1.0f;
     if (sheen_octree_create(bounds, &s->octree) != SHEEN_OK) {
         free(s);
         return SHEEN_ERR_NOMEM;
@@ -142,8 +143,8 @@ static void consider(const SheenRecordStore *s, uint32_t record, float d2, Vec3 
 {
     const Record *r = &s->records[record];
     unsigned cover;
-    float w = influence(s, r, d2, v3_dot(n, r->n), &cover);
-    if (!(w > 0.0f) || record_in_front(r, p, n, s->accuracy, slack)) return;
+    float cos_n = v3_dot(n, r->n), w = influence(s, r, d2, cos_n, &cover);
+    if (!(w > 0.0f) || cos_n < s->cos_min || record_in_front(r, p, n, s->accuracy, slack)) return;
     add_contributor(record, minf(w, weight_max), out);
     out->cover += cover;
 }

@@ -11,6 +11,7 @@
 typedef struct SheenRecordStore {
     float accuracy;         // a: a record is used where w > 1/a
     bool neighbor_clamping; // krivanek2006-making-caching-practical sec. 5.2
+    float cos_min;          // least cosine between the normals of a record and of a point that it serves; -1 at first
     SheenOctree *octree;
     Record *records;
     uint32_t n, capacity;

@@ -10,6 +10,26 @@ void sheen_seen_surface(const SheenWork *work, Vec3 wo, SeenSurface *out)
     out->side = v3_dot(wo, out->s.ng) >= 0.0f ? out->s.ng : v3_neg(out->s.ng);
     sheen_bsdf_look_up(work->scene, &out->s, &out->bsdf);
     out->both_sides = sheen_bsdf_transmits(&out->bsdf);
+    out->cached = false;
+}
+
+// What rays along the glossy part find.
+static const Bsdf *sampled(const SeenSurface *v)
+{
+    return v->cached ? &v->rest : &v->bsdf;
+}
+
+// f |cos| of the glossy part, the share that rays along it find better taken off.
+// @param expected  density of the light samples
+static Rgb glossy_share(const SeenSurface *v, Vec3 wi_l, bool delta, float expected)
+{
+    Rgb all = sheen_bsdf_eval_of(&v->bsdf, SHEEN_BSDF_GLOSSY, v->wo_l, wi_l);
+    if (delta || rgb_is_black(all)) return all;
+    float found = sheen_bsdf_pdf_of(sampled(v), SHEEN_BSDF_GLOSSY, v->wo_l, wi_l);
+    float share = power_heuristic(expected, found);
+    if (!v->cached) return rgb_scale(all, share);
+    Rgb rest = sheen_bsdf_eval_of(&v->rest, SHEEN_BSDF_GLOSSY, v->wo_l, wi_l);
+    return rgb_mad(rgb_sub(all, rest), share, rest);
 }
 
 // Light samples that go to `light` from a point, in the mean.
@@ -31,11 +51,7 @@ static Rgb light_sample(const SheenWork *work, const SeenSurface *v, LightNumber
     if (!(choice > 0.0f) || !sheen_light_sample(work->lights, light, v->s.p, numbers.place, &ls)) return rgb_gray(0.0f);
     Vec3 wi_l = frame_to_local(&v->frame, ls.wi);
     if (!(wi_l.z * v3_dot(ls.wi, v->s.ng) > 0.0f)) return rgb_gray(0.0f);
-    Rgb f = sheen_bsdf_eval_of(&v->bsdf, SHEEN_BSDF_GLOSSY, v->wo_l, wi_l);
-    if (!ls.delta && !rgb_is_black(f)) {
-        float found = sheen_bsdf_pdf_of(&v->bsdf, SHEEN_BSDF_GLOSSY, v->wo_l, wi_l);
-        f = rgb_scale(f, power_heuristic((float)samples * choice * ls.pdf, found));
-    }
+    Rgb f = glossy_share(v, wi_l, ls.delta, (float)samples * choice * ls.pdf);
     f = rgb_add(f, sheen_bsdf_eval_of(&v->bsdf, SHEEN_BSDF_DIFFUSE, v->wo_l, wi_l));
     if (rgb_is_black(f)) return f;
     Ray shadow = sheen_shadow_ray(&v->s, &ls);
@@ -67,7 +83,7 @@ bool sheen_glossy_ray(const SeenSurface *v, SheenSampler *sampler, Ray *ray, Rgb
 {
     BsdfSample sample;
     float lobe = sampler_1d(sampler);
-    if (!sheen_bsdf_sample_of(&v->bsdf, SHEEN_BSDF_GLOSSY, v->wo_l, lobe, sampler_2d(sampler), &sample)) return false;
+    if (!sheen_bsdf_sample_of(sampled(v), SHEEN_BSDF_GLOSSY, v->wo_l, lobe, sampler_2d(sampler), &sample)) return false;
     Vec3 wi = frame_to_world(&v->frame, sample.wi_l);
     if (!(sample.wi_l.z * v3_dot(wi, v->s.ng) > 0.0f) || !rgb_finite(sample.weight)) return false;
     *ray = sheen_surface_ray(&v->s, wi);

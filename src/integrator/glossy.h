@@ -10,6 +10,8 @@
 typedef struct SeenSurface {
     SurfacePoint s;
     Bsdf bsdf;
+    bool cached; // part of the glossy light is read from a cache: light samples stand for all that lamps send to it,
+    Bsdf rest;   // and rays go along the rest alone; set only then
     Frame frame; // about the shading normal
     Vec3 wo_l;
     Vec3 side;       // geometric normal on the side of the viewer

@@ -27,6 +27,7 @@ void sheen_hemisphere_free(Hemisphere *h)
     free(h->value);
     free(h->deviation);
     free(h->distance);
+    free(h->normals);
     free(h->vertices);
     free(h->moved);
     free(h->rays);
@@ -55,6 +56,7 @@ bool sheen_hemisphere_reserve(Hemisphere *h, SheenStrata strata)
         h->value = malloc(n * sizeof *h->value);
         h->deviation = malloc(n * sizeof *h->deviation);
         h->distance = malloc(n * sizeof *h->distance);
+        h->normals = malloc(n * sizeof *h->normals);
         h->vertices = malloc(rays * sizeof *h->vertices);
         h->moved = malloc(rays * sizeof *h->moved);
         h->rays = malloc(rays * sizeof *h->rays);
@@ -63,8 +65,8 @@ bool sheen_hemisphere_reserve(Hemisphere *h, SheenStrata strata)
         h->numbers = malloc(rays * sizeof *h->numbers);
         h->irradiance = malloc(rays * sizeof *h->irradiance);
         if (!h->directions || !h->L || !h->caustic || !h->specular || !h->mirrored || !h->through || !h->sorted ||
-            !h->extra || !h->further || !h->value || !h->deviation || !h->distance || !h->vertices || !h->moved ||
-            !h->rays || !h->hits || !h->points || !h->numbers || !h->irradiance ||
+            !h->extra || !h->further || !h->value || !h->deviation || !h->distance || !h->normals || !h->vertices ||
+            !h->moved || !h->rays || !h->hits || !h->points || !h->numbers || !h->irradiance ||
             !sheen_direct_reserve(&h->direct, rays)) {
             sheen_hemisphere_free(h);
             return false;
@@ -180,6 +182,7 @@ void sheen_hemisphere_trace(const SheenWork *work, const DiffusePoint *point, un
         Followed f;
         sheen_follow(work, &h->rays[i], &h->hits[i], &sampler, &stats->rays_specular, &f);
         h->distance[i] = maxf(f.distance, 1e-20f);
+        h->normals[i] = f.scatters ? frame_to_local(&h->frame, f.point.ng) : v3_neg(h->directions[i]);
         receive(work, &f, rgb_gray(1.0f), i, i, bounces, h);
         if (f.specular > 0) h->through[n_through++] = i;
     }

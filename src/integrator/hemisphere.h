@@ -38,6 +38,7 @@ typedef struct Hemisphere {
     Rgb *caustic;            // [cells] radiance of emitters seen through mirrors and glass
     unsigned char *specular; // [cells] 1 where a mirror or glass lay on the way
     float *distance;         // [cells] to what sends it; INFINITY for the sky
+    Vec3 *normals;           // [cells] local, of what sends it, toward the point; along the ray for the sky
     GatherVertex *vertices;
     size_t n_vertices;
     float error; // relative standard error of the irradiance that sheen_hemisphere_refine expects

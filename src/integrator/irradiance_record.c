@@ -58,7 +58,7 @@ static void make(void *user, const ShadingPoint *p, uint32_t key, unsigned worke
     record_set_radius(o, p->footprint, R, record);
     estimate_enlarge(R, record->R_min, &e);
     *light = (IrradianceLight){.E = e.E};
-    if (o->gradients == SHEEN_GRADIENTS_NONE) return;
+    if (o->gradients == SHEEN_GRADIENT_NONE) return;
     estimate_world_gradient(&h->frame, e.translation, light->translation);
     estimate_world_gradient(&h->frame, e.rotation, light->rotation);
 }

@@ -5,27 +5,6 @@
 #include "integrator/direct.h"
 
 #include <stdlib.h>
-#include <string.h>
-
-void sheen_uncovered_free(Uncovered *u)
-{
-    free(u->points);
-    *u = (Uncovered){0};
-}
-
-static bool uncovered_push(Uncovered *u, const ShadingPoint *p, size_t n)
-{
-    if (u->n + n > u->capacity) {
-        size_t capacity = 2 * (u->n + n) + 64;
-        ShadingPoint *grown = realloc(u->points, capacity * sizeof *grown);
-        if (!grown) return false;
-        u->points = grown;
-        u->capacity = capacity;
-    }
-    if (n) memcpy(u->points + u->n, p, n * sizeof *p);
-    u->n += n;
-    return true;
-}
 
 /** Buffers of one worker. */
 typedef struct Shader {
@@ -44,11 +23,11 @@ typedef struct Shader {
 
 typedef struct ShadeTask {
     const SheenWork *work;
-    const SheenIrradianceCache *cache;
+    const SheenCaches *caches;
     uint32_t first;
     Picture *picture;
-    Shader *shaders;      // [workers]
-    Uncovered *uncovered; // [tiles]
+    Shader *shaders;       // [workers]
+    SeenPoints *uncovered; // [tiles]
 } ShadeTask;
 
 static void free_points(Shader *s)
@@ -104,8 +83,8 @@ static void ask(const SheenWork *work, size_t n, uint32_t light, uint32_t sample
 
 static bool direct_light(const SheenWork *work, Shader *s, Picture *picture)
 {
-    size_t n = s->visibility.n_points, m = 0;
-    const ShadingPoint *points = s->visibility.points;
+    size_t n = s->visibility.seen.n_points, m = 0;
+    const ShadingPoint *points = s->visibility.seen.points;
     if (n == 0 || sheen_lights_count(work->lights) == 0) return true;
     if (!reserve(s, n)) return false;
     LightPlan plan = sheen_light_plan(work);
@@ -128,48 +107,79 @@ static bool direct_light(const SheenWork *work, Shader *s, Picture *picture)
 
 // The layers that show the cache at work. The estimate of the relative error is the contributors' 1/w, the split-sphere
 // bound, in the mean of the interpolation.
-static void add_cache_layers(const SheenWork *work, const SheenIrradianceCache *cache, const ShadingPoint *p,
+static void add_cache_layers(const SheenWork *work, const SheenRecordStore *store, const ShadingPoint *p,
                              const Contributors *c, SheenFilm *film)
 {
     uint32_t x = p->pixel % work->width, y = p->pixel / work->width;
     float error = 0.0f;
     bool dot = false;
     for (unsigned i = 0; i < c->n; ++i) {
-        error += c->weight[i] / (c->weight[i] + 1.0f / cache->store->accuracy);
-        Vec3 d = v3_sub(p->point.p, cache->store->records[c->record[i]].p);
+        error += c->weight[i] / (c->weight[i] + 1.0f / store->accuracy);
+        Vec3 d = v3_sub(p->point.p, store->records[c->record[i]].p);
         dot = dot || v3_length2(d) < sqrf(1.5f * p->footprint);
     }
     film_add(film, SHEEN_AOV_COVERAGE, x, y, rgb_gray((float)c->n));
-    film_add(film, SHEEN_AOV_ACCURACY, x, y, rgb_gray(cache->store->accuracy));
+    film_add(film, SHEEN_AOV_ACCURACY, x, y, rgb_gray(store->accuracy));
     film_add(film, SHEEN_AOV_ERROR, x, y, rgb_gray(error / c->weight_sum));
     if (dot) film_add(film, SHEEN_AOV_RECORDS, x, y, rgb_gray(1.0f));
 }
 
-static bool indirect_light(const SheenWork *work, const SheenIrradianceCache *cache, const ShadingPoint *p,
-                           Picture *picture, SheenStats *stats)
+static bool indirect_diffuse(const SheenWork *work, const SheenCaches *caches, const ShadingPoint *p, Picture *picture,
+                             SheenStats *stats)
 {
+    const SheenIrradianceCache *cache = caches->irradiance;
     Contributors c;
     sheen_store_find(cache->store, p->point.p, p->point.n, 0.0f, &c);
     if (c.n == 0) return false;
     Rgb E = sheen_irradiance_interpolate(cache->store, cache->light, &c, p->point.p, p->point.n);
     add_reflected(p, E, SHEEN_AOV_INDIRECT, picture, stats);
-    add_cache_layers(work, cache, p, &c, picture->film);
+    add_cache_layers(work, cache->store, p, &c, picture->film);
+    return true;
+}
+
+static bool indirect_glossy(const SheenWork *work, const SheenCaches *caches, const GlossyPoint *g, const Rgb lobes[],
+                            Picture *picture, SheenStats *stats)
+{
+    const SheenRadianceCache *cache = caches->radiance[g->basis];
+    const ShadingPoint *p = &g->at;
+    Contributors c;
+    sheen_store_find(cache->store, p->point.p, p->point.n, 0.0f, &c);
+    if (c.n == 0) return false;
+    RadianceLobe lobe = {g->order, lobes + g->lobe};
+    Rgb L = sheen_radiance_reflect(cache, &c, p->point.p, p->point.n, &lobe);
+    sheen_picture_add(picture, p->pixel, p->sample, rgb_mul(p->throughput, L), SHEEN_AOV_INDIRECT, stats);
+    add_cache_layers(work, cache->store, p, &c, picture->film);
+    return true;
+}
+
+// Adds the indirect light of points. @param uncovered  gets those without a record; NULL: they are left out
+// @return false when out of memory
+static bool indirect_light(const SheenWork *work, const SheenCaches *caches, const SeenPoints *seen, Picture *picture,
+                           SeenPoints *uncovered, SheenStats *stats)
+{
+    for (size_t i = 0; i < seen->n_points; ++i) {
+        const ShadingPoint *p = &seen->points[i];
+        if (indirect_diffuse(work, caches, p, picture, stats) || !uncovered) continue;
+        if (!sheen_seen_add(p, 1, uncovered)) return false;
+    }
+    for (size_t i = 0; i < seen->n_glossy; ++i) {
+        const GlossyPoint *g = &seen->glossy[i];
+        if (indirect_glossy(work, caches, g, seen->lobes, picture, stats) || !uncovered) continue;
+        if (!sheen_seen_add_glossy(&g->at, g->basis, g->order, seen->lobes + g->lobe, uncovered)) return false;
+    }
     return true;
 }
 
 // Shades some samples of a tile. @return false when out of memory
-static bool shade_range(const ShadeTask *t, const Tile *tile, SampleRange range, Uncovered *uncovered, Shader *s)
+static bool shade_range(const ShadeTask *t, const Tile *tile, SampleRange range, SeenPoints *uncovered, Shader *s)
 {
     double t0 = sheen_clock_seconds();
     if (!sheen_visibility_trace(t->work, tile, range, t->picture, &s->visibility, &s->stats)) return false;
     double t1 = sheen_clock_seconds();
     if (!direct_light(t->work, s, t->picture)) return false;
     double t2 = sheen_clock_seconds();
-    for (size_t i = 0; t->cache && i < s->visibility.n_points; ++i) {
-        const ShadingPoint *p = &s->visibility.points[i];
-        if (!indirect_light(t->work, t->cache, p, t->picture, &s->stats) && !uncovered_push(uncovered, p, 1))
-            return false;
-    }
+    if (t->caches && !indirect_light(t->work, t->caches, &s->visibility.seen, t->picture, uncovered, &s->stats))
+        return false;
     double t3 = sheen_clock_seconds();
     s->visibility_seconds += t1 - t0;
     s->direct_seconds += t2 - t1;
@@ -200,12 +210,12 @@ static void shade_task(void *user, size_t item, unsigned worker)
     if (worker == 0) progress_report(t->work->progress, "shade", (double)item / sheen_tile_count(t->work), 0);
 }
 
-SheenStatus sheen_shade(const SheenWork *work, const SheenIrradianceCache *cache, uint32_t first, Picture *picture,
-                        Uncovered *uncovered, SheenStats *stats)
+SheenStatus sheen_shade(const SheenWork *work, const SheenCaches *caches, uint32_t first, Picture *picture,
+                        SeenPoints *uncovered, SheenStats *stats)
 {
     unsigned workers = sheen_pool_size(work->pool);
     uint32_t tiles = sheen_tile_count(work);
-    ShadeTask task = {work, cache, first, picture, calloc(workers, sizeof(Shader)), calloc(tiles, sizeof(Uncovered))};
+    ShadeTask task = {work, caches, first, picture, calloc(workers, sizeof(Shader)), calloc(tiles, sizeof(SeenPoints))};
     SheenStatus status = task.shaders && task.uncovered ? SHEEN_OK : SHEEN_ERR_NOMEM;
     double start = sheen_clock_seconds();
     if (status == SHEEN_OK && !sheen_pool_run(work->pool, tiles, shade_task, &task, work->cancel))
@@ -225,17 +235,16 @@ SheenStatus sheen_shade(const SheenWork *work, const SheenIrradianceCache *cache
     stats->time_direct += part[1] * share;
     stats->time_interpolate += part[2] * share;
     for (uint32_t i = 0; i < tiles && task.uncovered; ++i) {
-        if (status == SHEEN_OK && !uncovered_push(uncovered, task.uncovered[i].points, task.uncovered[i].n))
-            status = SHEEN_ERR_NOMEM;
-        sheen_uncovered_free(&task.uncovered[i]);
+        if (status == SHEEN_OK && !sheen_seen_append(&task.uncovered[i], uncovered)) status = SHEEN_ERR_NOMEM;
+        sheen_seen_free(&task.uncovered[i]);
     }
     free(task.shaders);
     free(task.uncovered);
     return status;
 }
 
-void sheen_shade_uncovered(const SheenWork *work, const SheenIrradianceCache *cache, const Uncovered *uncovered,
+void sheen_shade_uncovered(const SheenWork *work, const SheenCaches *caches, const SeenPoints *uncovered,
                            Picture *picture, SheenStats *stats)
 {
-    for (size_t i = 0; i < uncovered->n; ++i) indirect_light(work, cache, &uncovered->points[i], picture, stats);
+    indirect_light(work, caches, uncovered, picture, NULL, stats);
 }

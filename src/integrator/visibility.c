@@ -26,7 +26,7 @@ Tile sheen_tile(const SheenWork *work, uint32_t index)
 
 void sheen_visibility_free(Visibility *v)
 {
-    free(v->points);
+    sheen_seen_free(&v->seen);
     free(v->rays[0]);
     free(v->rays[1]);
     free(v->batch);
@@ -44,19 +44,6 @@ static bool push_ray(Visibility *v, int list, const EyeRay *r)
         v->rays_capacity[list] = capacity;
     }
     v->rays[list][v->n_rays[list]++] = *r;
-    return true;
-}
-
-static bool push_point(Visibility *v, const ShadingPoint *p)
-{
-    if (v->n_points == v->points_capacity) {
-        size_t capacity = v->points_capacity ? 2 * v->points_capacity : 4096;
-        ShadingPoint *grown = realloc(v->points, capacity * sizeof *grown);
-        if (!grown) return false;
-        v->points = grown;
-        v->points_capacity = capacity;
-    }
-    v->points[v->n_points++] = *p;
     return true;
 }
 
@@ -214,19 +201,36 @@ static bool send_glossy(const SheenWork *work, const EyeRay *r, const SeenSurfac
     return send(r, &ray, weight, SHEEN_BSDF_MAX_DELTA, &next, list, v);
 }
 
+static ShadingPoint shading_point(const EyeRay *r, const DiffusePoint *point, bool lit)
+{
+    return (ShadingPoint){
+        *point, rgb_scale(r->throughput, r->weight), r->footprint, r->pixel, r->sample, r->branch, lit, r->gathered};
+}
+
 static bool add_point(const EyeRay *r, const DiffusePoint *point, bool lit, Visibility *v)
 {
-    ShadingPoint p = {
-        *point, rgb_scale(r->throughput, r->weight), r->footprint, r->pixel, r->sample, r->branch, lit, r->gathered};
-    return push_point(v, &p);
+    ShadingPoint p = shading_point(r, point, lit);
+    return sheen_seen_add(&p, 1, &v->seen);
+}
+
+// A point for what a cache holds of the glossy part; the rest stays in s->rest.
+static bool add_glossy_point(const SheenWork *work, const EyeRay *r, SeenSurface *s, bool lobes, Visibility *v)
+{
+    sheen_glossy_cache_read(work->glossy, s, &v->lobe);
+    DiffusePoint point;
+    if (v->lobe.order == 0 || !sheen_set_point(&s->s, s->wo_l.z > 0.0f, rgb_gray(1.0f), &point)) return true;
+    ShadingPoint p = shading_point(r, &point, true);
+    return sheen_seen_add_glossy(&p, v->lobe.basis, v->lobe.order, lobes ? v->lobe.coefficients : NULL, &v->seen);
 }
 
 // A surface in full: all its delta lobes, a ray along the glossy part, light samples, and a point for the diffuse part.
-static bool see(const SheenWork *work, const EyeRay *r, const SeenSurface *s, int list, Picture *picture, Visibility *v,
+static bool see(const SheenWork *work, const EyeRay *r, SeenSurface *s, int list, Picture *picture, Visibility *v,
                 SheenStats *stats)
 {
     unsigned classes = sheen_bsdf_classes(&s->bsdf);
     if ((classes & SHEEN_BSDF_DELTA) && !split(r, s, list, v)) return false;
+    if ((classes & SHEEN_BSDF_GLOSSY) && work->glossy && !add_glossy_point(work, r, s, picture != NULL, v))
+        return false;
     if ((classes & SHEEN_BSDF_GLOSSY) && !send_glossy(work, r, s, list, v)) return false;
     if ((classes & SHEEN_BSDF_SMOOTH) && picture) {
         Rgb L = sheen_glossy_lit(work, s, r->branch, r->pixel, r->sample, stats);
@@ -291,7 +295,7 @@ static bool arrive(const SheenWork *work, const SheenEye *eye, EyeRay *r, const 
 bool sheen_visibility_trace(const SheenWork *work, const Tile *tile, SampleRange range, Picture *picture, Visibility *v,
                             SheenStats *stats)
 {
-    v->n_points = 0;
+    seen_clear(&v->seen);
     SheenEye eye = sheen_eye(work->camera, work->width, work->height);
     if (!push_camera_rays(work, &eye, tile, range, v)) return false;
     stats->rays_camera += v->n_rays[0];

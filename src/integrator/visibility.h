@@ -3,21 +3,9 @@
 #ifndef SHEEN_INTEGRATOR_VISIBILITY_H
 #define SHEEN_INTEGRATOR_VISIBILITY_H
 
-#include "integrator/glossy.h"
+#include "integrator/glossy_cache.h"
 #include "integrator/picture.h"
-
-/** A point that a pixel sees. */
-typedef struct ShadingPoint {
-    DiffusePoint point;
-    Rgb throughput;  // of the mirrors and panes on the way, over the chance of the way; times what the sample counts
-                     // for under the pixel's filter, which may be negative
-    float footprint; // side of a pixel's square at this distance, metres
-    uint32_t pixel;  // y * width + x
-    uint32_t sample; // sample of the pixel
-    uint32_t branch; // which of the sample's ways through mirrors and glass
-    bool lit;        // its direct light is in the film
-    bool gathered;   // seen along a glossy reflection: all its light is indirect
-} ShadingPoint;
+#include "integrator/seen_points.h"
 
 /** A rectangle of the picture. */
 typedef struct Tile {
@@ -51,9 +39,9 @@ typedef struct SampleRange {
 
 /** Buffers and result of one worker. */
 typedef struct Visibility {
-    ShadingPoint *points;
-    size_t n_points, points_capacity;
+    SeenPoints seen;
     // scratch
+    GlossyLobe lobe;
     EyeRay *rays[2];
     size_t n_rays[2], rays_capacity[2];
     Ray *batch;
@@ -64,7 +52,8 @@ typedef struct Visibility {
 void sheen_visibility_free(Visibility *v);
 
 /**
- * Traces samples of each pixel of a tile. v->points then holds what they see, sample by sample.
+ * Traces samples of each pixel of a tile. v->seen then holds what they see, sample by sample. Glossy lobes that
+ * work->glossy holds become glossy points; without a picture, without their lobes.
  * At masks what passes and what does not are both followed, at glass and below coats all ways three times, after that
  * one of them is chosen. Of a glossy reflection one ray is followed; behind it, as behind three branchings, surfaces
  * are what sheen_step makes of them.

@@ -8,6 +8,7 @@
 #include "base/progress.h"
 #include "film/film.h"
 #include "film/pixel_filter.h"
+#include "gather/radiance.h"
 #include "light/light.h"
 #include "math/sampler.h"
 #include "math/warp.h"
@@ -15,18 +16,23 @@
 #include "scene/scene.h"
 
 typedef enum SheenSecondary { SHEEN_SECONDARY_CACHE, SHEEN_SECONDARY_PATH } SheenSecondary;
-typedef enum SheenGradients { SHEEN_GRADIENTS_STRATIFIED, SHEEN_GRADIENTS_NONE } SheenGradients;
+
+/** In which basis radiance records are: by the surface, or all in one. */
+typedef enum SheenBasisChoice { SHEEN_BASIS_AUTO, SHEEN_BASIS_ALL_HSH, SHEEN_BASIS_ALL_SH } SheenBasisChoice;
 
 /** Options of a render; sheen_options_default gives the documented defaults. */
 typedef struct SheenOptions {
-    uint32_t spp;           // samples per pixel
-    uint32_t light_samples; // for each shading point; 0: 1 of one light, 2 of each of up to 4, else 4; 1 for `path`
-    float noise;            // relative standard error that a pixel gets more samples for; not of `path`; 0: never
-    uint32_t bounces;       // indirect bounces; 0 is direct light only
-    double time_limit;      // seconds, path only; 0 for none
-    float accuracy;         // a: a record is used where w > 1/a
-    uint32_t gather_rays;   // rays for each record
-    SheenGradients gradients;
+    uint32_t spp;            // samples per pixel
+    uint32_t light_samples;  // for each shading point; 0: 1 of one light, 2 of each of up to 4, else 4; 1 for `path`
+    float noise;             // relative standard error that a pixel gets more samples for; not of `path`; 0: never
+    uint32_t bounces;        // indirect bounces; 0 is direct light only
+    double time_limit;       // seconds, path only; 0 for none
+    float accuracy;          // a: a record is used where w > 1/a
+    uint32_t gather_rays;    // rays for each record
+    SheenGradient gradients; // of irradiance stratified ones or none
+    SheenBasisChoice basis;
+    uint32_t order;   // largest of the harmonics of glossy light
+    float brdf_error; // of a lobe in harmonics, relative energy; beyond it lobes are sampled
     SheenSecondary secondary;
     bool neighbor_clamping, gradient_clamping;
     uint32_t seed;
@@ -38,8 +44,9 @@ SheenOptions sheen_options_default(void);
 typedef struct SheenStats {
     double time_visibility, time_fill, time_direct, time_interpolate;
     uint64_t rays_camera, rays_shadow, rays_gather, rays_path, rays_specular;
-    uint64_t records;      // of the cache that the picture reads
-    uint64_t deep_records; // of the light beyond the first bounce
+    uint64_t records;          // of the caches that the picture reads: of irradiance ...
+    uint64_t radiance_records; // ... and of radiance
+    uint64_t deep_records;     // of the light beyond the first bounce
     uint64_t cache_bytes;
     uint32_t passes;   // waves of the fill; passes of `path`
     uint32_t spp_done; // samples of each pixel, at least
@@ -56,8 +63,9 @@ typedef struct SheenWork {
     const SheenAccel *accel;
     const SheenLights *lights;
     const SheenCamera *camera;
-    uint32_t width, height;         // of the picture, may differ from the camera's own
-    const SheenPixelFilter *filter; // NULL: a box
+    uint32_t width, height;                // of the picture, may differ from the camera's own
+    const SheenPixelFilter *filter;        // NULL: a box
+    const struct SheenGlossyCache *glossy; // NULL: glossy light is sampled, not cached
     SheenOptions options;
     SheenPool *pool;
     const atomic_bool *cancel; // may be NULL
@@ -145,5 +153,6 @@ static inline float sheen_eye_footprint(const SheenEye *eye, float length)
  */
 SHEEN_NODISCARD SheenStatus sheen_path_render(const SheenWork *work, SheenFilm *film, SheenStats *stats);
 SHEEN_NODISCARD SheenStatus sheen_irradiance_render(const SheenWork *work, SheenFilm *film, SheenStats *stats);
+SHEEN_NODISCARD SheenStatus sheen_radiance_render(const SheenWork *work, SheenFilm *film, SheenStats *stats);
 
 #endif

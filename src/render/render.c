@@ -10,6 +10,7 @@ typedef struct Integrator {
 } Integrator;
 
 static const Integrator integrators[] = {
+    [SHEEN_INTEGRATOR_RADIANCE] = {sheen_radiance_render, SHEEN_ENVIRONMENT_HARD},
     [SHEEN_INTEGRATOR_IRRADIANCE] = {sheen_irradiance_render, SHEEN_ENVIRONMENT_HARD},
     [SHEEN_INTEGRATOR_PATH] = {sheen_path_render, SHEEN_ENVIRONMENT_WHOLE},
 };
@@ -33,10 +34,9 @@ SheenStatus sheen_render(const SheenScene *scene, const SheenRenderSettings *set
                           "%s: a picture of %u x %u pixels is out of range (1 x 1 to %d a side, %llu in all)",
                           scene->name, width, height, SHEEN_IMAGE_MAX_SIDE, (unsigned long long)SHEEN_IMAGE_MAX_PIXELS);
 
-    // The cached integrator finds what is soft of an environment with the rays of its gathers.
-    SheenEnvironmentSplit split =
-        settings->integrator == SHEEN_INTEGRATOR_IRRADIANCE ? SHEEN_ENVIRONMENT_HARD : SHEEN_ENVIRONMENT_WHOLE;
+    // The cached integrators find what is soft of an environment with the rays of their gathers.
     const Integrator *integrator = &integrators[settings->integrator];
+    SheenEnvironmentSplit split = integrator->environment;
     SheenPixelFilter filter;
     sheen_pixel_filter_init(settings->filter.kind ? &settings->filter : &camera->filter, &filter);
     SheenLights *lights = NULL;

@@ -6,7 +6,11 @@
 #include "film/film.h"
 #include "integrator/work.h"
 
-typedef enum SheenIntegrator { SHEEN_INTEGRATOR_IRRADIANCE, SHEEN_INTEGRATOR_PATH } SheenIntegrator;
+typedef enum SheenIntegrator {
+    SHEEN_INTEGRATOR_RADIANCE,
+    SHEEN_INTEGRATOR_IRRADIANCE,
+    SHEEN_INTEGRATOR_PATH
+} SheenIntegrator;
 
 typedef struct SheenRenderSettings {
     SheenIntegrator integrator;

@@ -93,7 +93,7 @@ static void check_keys(const json_t *stats)
 static void test_irradiance(void **state)
 {
     (void)state;
-    json_t *stats = stats_of("--spp 2 --threads 2 --seed 5");
+    json_t *stats = stats_of("--integrator irradiance --spp 2 --threads 2 --seed 5");
     check_keys(stats);
     assert_string_equal(text(stats, "integrator"), "irradiance");
     assert_int_equal(integer(stats, "threads"), 2);

@@ -43,13 +43,15 @@ done
 refused --accuracy "${R[@]}" --accuracy 1.5
 refused --time-limit "${R[@]}" --time-limit 0
 refused --threads "${R[@]}" --threads 1025
+refused --order "${R[@]}" --order 17
+refused --brdf-error "${R[@]}" --brdf-error 0.6
 refused --seed "${R[@]}" --seed 4294967296
 for size in '' 10 10x x10 0x10 10x0 10x10x10 -1x10 10x-1 '10 x 10' 1e1x10 65537x1 65536x65536; do
     refused --size "${R[@]}" "--size=$size"
 done
 
 # Names.
-for option in --integrator --gradients --secondary --neighbor-clamping --gradient-clamping --progress --aov; do
+for option in --integrator --gradients --basis --secondary --neighbor-clamping --gradient-clamping --progress --aov; do
     refused "$option" "${R[@]}" "$option" nosuch
     refused "$option" "${R[@]}" "$option="
     refused "$option" "${R[@]}" "$option"
@@ -60,11 +62,11 @@ refused --aov "${R[@]}" --aov depth,,normal
 refused --time-limit "${R[@]}" --time-limit 1
 
 # Options and values of later versions say so.
-for option in order brdf-error basis error-metric adaptive discernible cache-in cache-out records-only frame; do
+for option in error-metric adaptive discernible cache-in cache-out records-only frame; do
     refused "--$option" "${R[@]}" "--$option" 1
     grep -q 'not in this version' err || fail "--$option does not say that it is not in this version"
 done
-for value in integrator=radiance integrator=light-vectors gradients=numerical gradients=analytical; do
+for value in integrator=light-vectors; do
     refused "--${value%%=*}" "${R[@]}" "--$value"
     grep -q 'not in this version' err || fail "--$value does not say that it is not in this version"
 done

@@ -88,6 +88,12 @@ static SheenImage reference(const Row *row)
     return image;
 }
 
+static SheenIntegrator integrator_named(const char *name)
+{
+    if (strcmp(name, "path") == 0) return SHEEN_INTEGRATOR_PATH;
+    return strcmp(name, "radiance") == 0 ? SHEEN_INTEGRATOR_RADIANCE : SHEEN_INTEGRATOR_IRRADIANCE;
+}
+
 /** Renders the row's picture and returns the row with what it cost. */
 static Row measured(const Row *row, SheenPool *pool)
 {
@@ -95,8 +101,7 @@ static Row measured(const Row *row, SheenPool *pool)
     snprintf(path, sizeof path, SHEEN_TEST_SOURCE_DIR "/scenes/%.31s.xml", row->scene);
     SheenScene *scene;
     assert_int_equal(sheen_scene_load(path, &console, &scene), SHEEN_OK);
-    SheenRenderSettings settings = {.integrator = strcmp(row->integrator, "path") == 0 ? SHEEN_INTEGRATOR_PATH
-                                                                                       : SHEEN_INTEGRATOR_IRRADIANCE,
+    SheenRenderSettings settings = {.integrator = integrator_named(row->integrator),
                                     .width = row->width,
                                     .height = row->height,
                                     .options = sheen_options_default()};
@@ -113,7 +118,7 @@ static Row measured(const Row *row, SheenPool *pool)
     assert_int_equal(metrics.nonfinite, 0);
     assert_int_equal(stats.nonfinite_samples, 0);
     Row out = *row;
-    out.records = (double)stats.records;
+    out.records = (double)(stats.records + stats.radiance_records);
     out.rays =
         (double)(stats.rays_camera + stats.rays_shadow + stats.rays_gather + stats.rays_path + stats.rays_specular);
     out.relmse = metrics.relmse;

@@ -191,11 +191,11 @@ static void test_straight_ahead(void **state)
     Visibility v;
     SheenFilm *film;
     look_down(NULL, &kit, &v, &film);
-    assert_int_equal(v.n_points, 16 * 16 * 4);
+    assert_int_equal(v.seen.n_points, 16 * 16 * 4);
     unsigned char count[256] = {0};
     float pixel = 2.0f * tanf(0.25f) / 16.0f;
-    for (size_t i = 0; i < v.n_points; ++i) {
-        const ShadingPoint *p = &v.points[i];
+    for (size_t i = 0; i < v.seen.n_points; ++i) {
+        const ShadingPoint *p = &v.seen.points[i];
         assert_in_range(p->pixel, 0, 255);
         assert_in_range(p->sample, 0, 3);
         ++count[p->pixel];
@@ -229,10 +229,10 @@ static void test_mirror(void **state)
     Kit kit;
     Visibility v;
     look_down(add_mirror, &kit, &v, NULL);
-    assert_int_equal(v.n_points, 16 * 16 * 4);
+    assert_int_equal(v.seen.n_points, 16 * 16 * 4);
     float pixel = 2.0f * tanf(0.25f) / 16.0f;
-    for (size_t i = 0; i < v.n_points; ++i) {
-        const ShadingPoint *p = &v.points[i];
+    for (size_t i = 0; i < v.seen.n_points; ++i) {
+        const ShadingPoint *p = &v.seen.points[i];
         assert_true(fabsf(p->point.p.z - 10.0f) < 1e-5f && p->point.n.z == -1.0f);
         assert_true(fabsf(p->throughput.g - 1.0f) < 1e-5f && p->point.reflectance.g == 0.25f);
         // As far as from the mirrored eye at z = 0.
@@ -265,10 +265,10 @@ static void test_pane_splits(void **state)
     Kit kit;
     Visibility v;
     look_down(add_pane, &kit, &v, NULL);
-    assert_int_equal(v.n_points, 2 * 16 * 16 * 4); // each sample once through and once back
+    assert_int_equal(v.seen.n_points, 2 * 16 * 16 * 4); // each sample once through and once back
     double sum = 0.0;
-    for (size_t i = 0; i < v.n_points; ++i) {
-        const ShadingPoint *p = &v.points[i];
+    for (size_t i = 0; i < v.seen.n_points; ++i) {
+        const ShadingPoint *p = &v.seen.points[i];
         bool through = p->point.p.z < 1.0f;
         // At normal incidence R = 0.04 and the pane reflects 2 R / (1 + R); at 20 degrees hardly more.
         float R = 2.0f * 0.04f / 1.04f;
@@ -289,14 +289,14 @@ static void test_lossless_glass_conserves(void **state)
     Visibility v;
     look_down(add_three_panes, &kit, &v, NULL);
     double sum[16 * 16 * 4] = {0};
-    for (size_t i = 0; i < v.n_points; ++i) {
-        const ShadingPoint *p = &v.points[i];
+    for (size_t i = 0; i < v.seen.n_points; ++i) {
+        const ShadingPoint *p = &v.seen.points[i];
         assert_true(p->throughput.g > 0.0f);
         sum[p->pixel * 4 + p->sample] += (double)p->throughput.g;
         // No two ways of one sample carry one number: it keys their light samples.
-        for (size_t j = i + 1; j < v.n_points && j < i + 64; ++j)
-            if (v.points[j].pixel == p->pixel && v.points[j].sample == p->sample)
-                assert_true(v.points[j].branch != p->branch);
+        for (size_t j = i + 1; j < v.seen.n_points && j < i + 64; ++j)
+            if (v.seen.points[j].pixel == p->pixel && v.seen.points[j].sample == p->sample)
+                assert_true(v.seen.points[j].branch != p->branch);
     }
     for (int i = 0; i < 16 * 16 * 4; ++i) assert_true(sum[i] > 0.998 && sum[i] < 1.00001);
     look_end(&kit, &v);
@@ -327,7 +327,7 @@ static void test_film_takes_what_shines(void **state)
     assert_true(sheen_visibility_trace(&kit.work, &tile, (SampleRange){0, 4, NULL}, &picture, &v, &stats));
     sheen_picture_average(&picture);
     sheen_picture_free(&picture);
-    assert_int_equal(v.n_points, 0); // the lamp reflects nothing
+    assert_int_equal(v.seen.n_points, 0); // the lamp reflects nothing
     for (uint32_t i = 0; i < 256; ++i) {
         Rgb expected = i % 16 < 8 ? rgb(3.0f, 2.0f, 1.0f) : rgb_gray(0.5f);
         assert_true(fabsf(film->color[i].r - expected.r) < 1e-5f && fabsf(film->color[i].b - expected.b) < 1e-5f);

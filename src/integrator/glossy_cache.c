@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integrator/glossy_cache.h"
+
+#include "material/lobe_table.h"
+
+#include <stdlib.h>
+
+struct SheenGlossyCache {
+    SheenLobeTables *tables;
+    SheenRotation *to_world; // spherical coefficients from a local frame
+    SheenBasis *basis;       // [shapes]
+};
+
+// A mesh is flat when its shading normals are those of its faces, and these are few: a room, a box, a pane. What has
+// more is a curved thing made of flat pieces.
+enum { FLAT_NORMALS_MAX = 32 };
+
+static const float same_cos = 0.99996f; // half a degree
+
+static Vec3 corner(const SheenMesh *m, uint32_t triangle, int k)
+{
+    return m->p[m->triangles[triangle][k]];
+}
+
+// Whether the triangle's vertices have its own normal, or none.
+static bool shaded_flat(const SheenMesh *m, uint32_t triangle, Vec3 n)
+{
+    for (int k = 0; k < 3 && m->n; ++k)
+        if (!(fabsf(v3_dot(m->n[m->triangles[triangle][k]], n)) > same_cos)) return false;
+    return true;
+}
+
+static bool mesh_is_flat(const SheenMesh *m)
+{
+    Vec3 found[FLAT_NORMALS_MAX];
+    unsigned n_found = 0;
+    for (uint32_t i = 0; i < m->n_triangles; ++i) {
+        Vec3 a = corner(m, i, 0);
+        Vec3 n = v3_normalize(v3_cross(v3_sub(corner(m, i, 1), a), v3_sub(corner(m, i, 2), a)));
+        if (!(v3_length2(n) > 0.0f)) continue;
+        if (!shaded_flat(m, i, n)) return false;
+        unsigned k = 0;
+        while (k < n_found && !(v3_dot(found[k], n) > same_cos)) ++k;
+        if (k < n_found) continue;
+        if (n_found == FLAT_NORMALS_MAX) return false;
+        found[n_found++] = n;
+    }
+    return true;
+}
+
+static SheenBasis basis_of(const SheenShape *shape, SheenBasisChoice choice)
+{
+    if (choice != SHEEN_BASIS_AUTO) return choice == SHEEN_BASIS_ALL_SH ? SHEEN_BASIS_SH : SHEEN_BASIS_HSH;
+    bool flat = shape->kind == SHEEN_SHAPE_DISK || (shape->kind == SHEEN_SHAPE_MESH && mesh_is_flat(&shape->mesh));
+    return flat ? SHEEN_BASIS_HSH : SHEEN_BASIS_SH;
+}
+
+SheenStatus sheen_glossy_cache_create(const SheenWork *work, SheenGlossyCache **out)
+{
+    *out = NULL;
+    SheenGlossyCache *g = calloc(1, sizeof *g);
+    if (!g) return SHEEN_ERR_NOMEM;
+    SheenLobeTableDesc desc = {.order = work->options.order, .error = work->options.brdf_error};
+    SheenStatus status = sheen_lobe_tables_create(work->log, work->scene, &desc, work->pool, work->cancel, &g->tables);
+    unsigned order = sheen_lobe_tables_order(g->tables);
+    if (status == SHEEN_OK && order == 0) {
+        sheen_glossy_cache_destroy(&g);
+        return SHEEN_OK;
+    }
+    const SheenScene *scene = work->scene;
+    if (status == SHEEN_OK) status = sheen_rotation_create(SHEEN_BASIS_SH, order, 0.0f, &g->to_world);
+    g->basis = calloc(scene->n_shapes + 1, sizeof *g->basis);
+    if (!g->basis) status = SHEEN_ERR_NOMEM;
+    for (uint32_t i = 0; i < scene->n_shapes && status == SHEEN_OK; ++i)
+        if (sheen_lobe_tables_has(g->tables, scene->shapes[i].material))
+            g->basis[i] = basis_of(&scene->shapes[i], work->options.basis);
+    if (status != SHEEN_OK) sheen_glossy_cache_destroy(&g);
+    *out = g;
+    return status;
+}
+
+void sheen_glossy_cache_destroy(SheenGlossyCache **glossy)
+{
+    SheenGlossyCache *g = glossy ? *glossy : NULL;
+    if (!g) return;
+    sheen_lobe_tables_destroy(&g->tables);
+    sheen_rotation_destroy(&g->to_world);
+    free(g->basis);
+    free(g);
+    *glossy = NULL;
+}
+
+unsigned sheen_glossy_cache_order(const SheenGlossyCache *g)
+{
+    return sheen_lobe_tables_order(g->tables);
+}
+
+// From the mirrored hemisphere behind a surface to the frame about the normal there. With the frame (t, b, n) in front
+// the mirror image has the axes (t, b, -n), which are no rotation of any frame: (t, -b, -n) are, and turn the sign of y
+// and with it of all functions with m < 0.
+static void turn_behind(const Frame *front, unsigned n, Rgb c[])
+{
+    for (unsigned l = 1; l < n; ++l)
+        for (int m = -(int)l; m < 0; ++m) c[basis_index(l, m)] = rgb_scale(c[basis_index(l, m)], -1.0f);
+    Frame mirrored = {front->t, v3_neg(front->b), v3_neg(front->n)}, behind = frame_from_normal(v3_neg(front->n));
+    SheenEuler e = sheen_euler_between(&mirrored, &behind); // about z alone
+    Vec2 turn = v2(e.alpha.x * e.gamma.x - e.alpha.y * e.gamma.y, e.alpha.x * e.gamma.y + e.alpha.y * e.gamma.x);
+    sheen_rotate_z(n, turn, 3, &c[0].r, &c[0].r);
+}
+
+void sheen_glossy_cache_read(const SheenGlossyCache *g, SeenSurface *v, GlossyLobe *out)
+{
+    LobeReading reading;
+    out->basis = g->basis[v->s.shape];
+    sheen_lobe_table_read(g->tables, out->basis, &v->bsdf, v->wo_l, out->coefficients, &reading);
+    out->order = reading.order;
+    if (reading.order == 0) return;
+    v->cached = true;
+    v->rest = v->bsdf;
+    sheen_bsdf_leave_rest(&v->rest, &reading);
+    if (out->basis == SHEEN_BASIS_SH) {
+        Frame world = {v3(1, 0, 0), v3(0, 1, 0), v3(0, 0, 1)};
+        float *c = &out->coefficients[0].r;
+        sheen_rotation_apply(g->to_world, sheen_euler_between(&v->frame, &world), 3, c, c);
+    } else if (v->wo_l.z < 0.0f) {
+        turn_behind(&v->frame, reading.order, out->coefficients);
+    }
+}

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integrator/radiance_record.h"
+
+#include "gather/radiance.h"
+#include "integrator/gather_light.h"
+#include "integrator/record_radius.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct SheenRadianceMaker {
+    const SheenWork *work;
+    const SheenDeep *deep;
+    SheenRadianceCache *cache;
+    SheenRadianceTables *tables;
+    unsigned workers;
+    Hemisphere *scratch; // [workers]
+};
+
+SheenStatus sheen_radiance_maker_create(const SheenWork *work, const SheenDeep *deep, SheenRadianceCache *cache,
+                                        SheenRadianceMaker **out)
+{
+    *out = NULL;
+    SheenRadianceMaker *m = calloc(1, sizeof *m);
+    if (!m) return SHEEN_ERR_NOMEM;
+    *m = (SheenRadianceMaker){.work = work, .deep = deep, .cache = cache, .workers = sheen_pool_size(work->pool)};
+    m->scratch = calloc(m->workers, sizeof *m->scratch);
+    // A gather needs several rays for each coefficient.
+    uint32_t least = 8 * (uint32_t)basis_size(cache->order), rays = work->options.gather_rays;
+    SheenStrata strata = sheen_strata_uniform(rays > least ? rays : least);
+    bool ok = m->scratch != NULL;
+    for (unsigned i = 0; i < m->workers && ok; ++i) ok = sheen_hemisphere_reserve(&m->scratch[i], strata);
+    SheenStatus status =
+        ok ? sheen_radiance_tables_create(strata, cache->basis, cache->order, &m->tables) : SHEEN_ERR_NOMEM;
+    if (status != SHEEN_OK) sheen_radiance_maker_destroy(&m);
+    *out = m;
+    return status;
+}
+
+void sheen_radiance_maker_destroy(SheenRadianceMaker **maker)
+{
+    SheenRadianceMaker *m = maker ? *maker : NULL;
+    if (!m) return;
+    for (unsigned i = 0; i < m->workers && m->scratch; ++i) sheen_hemisphere_free(&m->scratch[i]);
+    free(m->scratch);
+    sheen_radiance_tables_destroy(&m->tables);
+    free(m);
+    *maker = NULL;
+}
+
+static double square_sum(size_t n, const Rgb v[])
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < n; ++i) sum += (double)sqrf(rgb_luminance(v[i]));
+    return sum;
+}
+
+// The harmonic mean distance, bounded by the light over its gradient, both as vectors. Source:
+// krivanek2006-making-caching-practical sec. 5.1.
+static float gradient_radius(size_t n, const RadianceEstimate *e)
+{
+    double slope = sqrt(square_sum(n, e->dx) + square_sum(n, e->dy));
+    return slope > 0.0 ? minf(e->R, (float)(sqrt(square_sum(n, e->lambda)) / slope)) : e->R;
+}
+
+static void make(void *user, const ShadingPoint *p, uint32_t key, unsigned worker, SheenStats *stats, Record *record,
+                 void *out)
+{
+    const SheenRadianceMaker *m = user;
+    const SheenOptions *o = &m->work->options;
+    const SheenRadianceCache *cache = m->cache;
+    Hemisphere *h = &m->scratch[worker];
+    sheen_gather_light(m->work, m->deep, &p->point, record_least_radius(o, p->footprint), key, h, stats);
+    float *light = out;
+    memset(light, 0, radiance_light_floats(cache) * sizeof *light);
+    Rgb *parts[3];
+    for (size_t i = 0; i < 3; ++i) parts[i] = (Rgb *)(void *)(light + i * cache->stride);
+    RadianceEstimate e = {.lambda = parts[0], .dx = parts[1], .dy = parts[2]};
+    RadianceSamples samples = {h->directions, h->L, h->distance, h->normals};
+    sheen_estimate_radiance(m->tables, &samples, o->gradients, &e);
+    size_t n = basis_size(cache->order);
+    *record = (Record){.p = p->point.p, .n = p->point.n, .error = h->error};
+    float R = o->gradient_clamping ? gradient_radius(n, &e) : e.R;
+    record_set_radius(o, p->footprint, R, record);
+    // Farther out than its own radius a gradient would overshoot.
+    float scale = R < record->R_min ? maxf(R, 0.0f) / record->R_min : 1.0f;
+    for (size_t i = 0; i < 2 * cache->stride; ++i) light[cache->stride + i] *= scale;
+    if (cache->basis == SHEEN_BASIS_HSH) return;
+    Frame world = {v3(1, 0, 0), v3(0, 1, 0), v3(0, 0, 1)};
+    SheenEuler to_world = sheen_euler_between(&h->frame, &world);
+    for (size_t i = 0; i < 3; ++i)
+        sheen_rotation_apply(cache->rotation, to_world, 3, light + i * cache->stride, light + i * cache->stride);
+}
+
+static SheenStatus insert(void *user, const Record *record, const void *light)
+{
+    const SheenRadianceMaker *m = user;
+    return sheen_radiance_cache_insert(m->cache, record, light);
+}
+
+RecordKind sheen_radiance_kind(SheenRadianceMaker *maker)
+{
+    return (RecordKind){maker->cache->store, radiance_light_floats(maker->cache) * sizeof(float), maker, make, insert};
+}

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// How radiance records are made.
+#ifndef SHEEN_INTEGRATOR_RADIANCE_RECORD_H
+#define SHEEN_INTEGRATOR_RADIANCE_RECORD_H
+
+#include "cache/radiance_cache.h"
+#include "integrator/deep.h"
+#include "integrator/fill.h"
+
+typedef struct SheenRadianceMaker SheenRadianceMaker;
+
+/**
+ * @param deep  light beyond the first bounce; NULL when it is traced as paths, or when there is none
+ * @param out   owned by the caller; borrows work, deep and cache
+ */
+SHEEN_NODISCARD SheenStatus sheen_radiance_maker_create(const SheenWork *work, const SheenDeep *deep,
+                                                        SheenRadianceCache *cache, SheenRadianceMaker **out);
+void sheen_radiance_maker_destroy(SheenRadianceMaker **maker);
+
+/** What sheen_fill_run needs; borrows the maker. */
+RecordKind sheen_radiance_kind(SheenRadianceMaker *maker);
+
+#endif
