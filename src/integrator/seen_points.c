@@ -45,7 +45,7 @@ bool sheen_seen_add_glossy(const ShadingPoint *at, SheenBasis basis, unsigned or
         seen->lobes = lobes;
         memcpy(lobes + seen->n_lobes, lobe, n * sizeof *lobes);
     }
-    g[seen->n_glossy++] = (GlossyPoint){*at, basis, order, seen->n_lobes};
+    g[seen->n_glossy++] = (GlossyPoint){*at, basis, lobe ? order : 0, seen->n_lobes};
     seen->n_lobes += n;
     return true;
 }

@@ -23,7 +23,7 @@ typedef struct ShadingPoint {
 typedef struct GlossyPoint {
     ShadingPoint at; // lit; its reflectance says nothing
     SheenBasis basis;
-    unsigned order; // n
+    unsigned order; // n; 0 without a lobe
     size_t lobe;    // the first of its n * n coefficients in the list's `lobes`
 } GlossyPoint;
 
