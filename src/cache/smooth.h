@@ -5,6 +5,7 @@
 
 #include "base/pool.h"
 #include "cache/irradiance_cache.h"
+#include "cache/radiance_cache.h"
 
 /**
  * Replaces the irradiance and the gradients of each record by means over what it and its neighbors, as far as twice its
@@ -15,5 +16,10 @@
  */
 SHEEN_NODISCARD SheenStatus sheen_irradiance_cache_smooth(SheenIrradianceCache *cache, const Bounds *bounds,
                                                           SheenPool *pool, const atomic_bool *cancel);
+
+/** The same of radiance records, by the mean of what comes in. Hemispherical ones learn from their like alone: those
+ *  with the same normal, to half a degree. */
+SHEEN_NODISCARD SheenStatus sheen_radiance_cache_smooth(SheenRadianceCache *cache, const Bounds *bounds,
+                                                        SheenPool *pool, const atomic_bool *cancel);
 
 #endif

@@ -162,6 +162,18 @@ static SheenStatus fill(Cached *c, const SeenPoints *seen, SheenStats *stats)
     return status;
 }
 
+static SheenStatus smooth(Cached *c, SheenStats *stats)
+{
+    const SheenWork *w = c->work;
+    double start = sheen_clock_seconds();
+    SheenStatus status = sheen_irradiance_cache_smooth(c->caches.irradiance, &w->scene->bounds, w->pool, w->cancel);
+    for (int b = 0; b < SHEEN_BASIS_COUNT && status == SHEEN_OK; ++b)
+        if (c->caches.radiance[b])
+            status = sheen_radiance_cache_smooth(c->caches.radiance[b], &w->scene->bounds, w->pool, w->cancel);
+    stats->time_fill += sheen_clock_seconds() - start;
+    return status;
+}
+
 static SheenStatus fill_first(Cached *c, SheenStats *stats)
 {
     const SheenWork *work = c->work;
@@ -179,10 +191,7 @@ static SheenStatus fill_first(Cached *c, SheenStats *stats)
     if (status == SHEEN_OK) status = create_caches(c);
     stats->time_fill += sheen_clock_seconds() - t1;
     if (status == SHEEN_OK) status = fill(c, &points, stats);
-    double t2 = sheen_clock_seconds();
-    if (status == SHEEN_OK)
-        status = sheen_irradiance_cache_smooth(c->caches.irradiance, &work->scene->bounds, work->pool, work->cancel);
-    stats->time_fill += sheen_clock_seconds() - t2;
+    if (status == SHEEN_OK) status = smooth(c, stats);
     sheen_seen_free(&points);
     return status;
 }

@@ -26,7 +26,7 @@ SheenStatus sheen_radiance_maker_create(const SheenWork *work, const SheenDeep *
     *m = (SheenRadianceMaker){.work = work, .deep = deep, .cache = cache, .workers = sheen_pool_size(work->pool)};
     m->scratch = calloc(m->workers, sizeof *m->scratch);
     // A gather needs several rays for each coefficient.
-    uint32_t least = 8 * (uint32_t)basis_size(cache->order), rays = work->options.gather_rays;
+    uint32_t least = 16 * (uint32_t)basis_size(cache->order), rays = work->options.gather_rays;
     SheenStrata strata = sheen_strata_uniform(rays > least ? rays : least);
     bool ok = m->scratch != NULL;
     for (unsigned i = 0; i < m->workers && ok; ++i) ok = sheen_hemisphere_reserve(&m->scratch[i], strata);
@@ -63,6 +63,14 @@ static float gradient_radius(size_t n, const RadianceEstimate *e)
     return slope > 0.0 ? minf(e->R, (float)(sqrt(square_sum(n, e->lambda)) / slope)) : e->R;
 }
 
+// Standard error relative to what a lobe as narrow as the order resolves sees of even light of the same energy: such a
+// lobe of norm 1 takes one part in n of |lambda|.
+static float relative_error(unsigned order, const RadianceEstimate *e)
+{
+    float norm = (float)sqrt(square_sum(basis_size(order), e->lambda));
+    return norm > 0.0f ? e->error * (float)order / norm : 0.0f;
+}
+
 static void make(void *user, const ShadingPoint *p, uint32_t key, unsigned worker, SheenStats *stats, Record *record,
                  void *out)
 {
@@ -79,7 +87,7 @@ static void make(void *user, const ShadingPoint *p, uint32_t key, unsigned worke
     RadianceSamples samples = {h->directions, h->L, h->distance, h->normals};
     sheen_estimate_radiance(m->tables, &samples, o->gradients, &e);
     size_t n = basis_size(cache->order);
-    *record = (Record){.p = p->point.p, .n = p->point.n, .error = h->error};
+    *record = (Record){.p = p->point.p, .n = p->point.n, .error = relative_error(cache->order, &e)};
     float R = o->gradient_clamping ? gradient_radius(n, &e) : e.R;
     record_set_radius(o, p->footprint, R, record);
     // Farther out than its own radius a gradient would overshoot.
