@@ -23,7 +23,8 @@ class Run:
 
     @property
     def records(self):
-        return self.stats["records"]["irradiance"]
+        records = self.stats["records"]
+        return records["irradiance"] + records["radiance"]
 
     @property
     def rays(self):
