@@ -27,12 +27,12 @@
 #include "integrator/hemisphere.h"
 #include "integrator/visibility.h"
 #include "io/load.h"
+#include "timing.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { N_POINTS = 500, GATHER_RAYS = 1024, N_RUNS = 5, PICTURE_WIDTH = 256 };
 
@@ -52,22 +52,14 @@ typedef enum Section {
     N_SECTIONS
 } Section;
 
-// Of this process alone: other programs do not count.
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 // A system call, about a microsecond: some per cent of the shortest section.
 static double empty_interval(void)
 {
     enum { N = 20000 };
     double sum = 0.0;
     for (int i = 0; i < N; ++i) {
-        double start = seconds();
-        sum += seconds() - start;
+        double start = processor_seconds();
+        sum += processor_seconds() - start;
     }
     return sum / N;
 }
@@ -76,12 +68,6 @@ static double empty_interval(void)
 static void keep(double *sum, double result)
 {
     if (isfinite(result)) *sum += result;
-}
-
-static int by_value(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
 }
 
 // ---- scene and points -------------------------------------------------------------------------------------------
@@ -223,9 +209,9 @@ static void record(Bench *b, size_t i)
 static double bare_gather(Bench *b, size_t i)
 {
     memcpy(b->h.rays, b->recorded[i].rays, b->h.cells * sizeof *b->h.rays);
-    double start = seconds();
+    double start = processor_seconds();
     sheen_accel_intersect_many(b->accel, SHEEN_COHERENT, b->h.cells, b->h.rays, b->h.hits);
-    double end = seconds();
+    double end = processor_seconds();
     keep(&b->sum, (double)b->h.hits[0].t);
     return end - start;
 }
@@ -235,9 +221,9 @@ static double bare_shadow(Bench *b, size_t i)
     size_t n = b->recorded[i].n_vertices;
     DirectScratch *d = &b->h.direct;
     memcpy(d->rays, b->recorded[i].shadow, n * sizeof *d->rays);
-    double start = seconds();
+    double start = processor_seconds();
     sheen_accel_transmittance_many(b->accel, n, d->rays, d->transmittance);
-    double end = seconds();
+    double end = processor_seconds();
     if (n > 0) keep(&b->sum, (double)d->transmittance[0]);
     return end - start;
 }
@@ -246,13 +232,13 @@ static void whole_gather(Bench *b, size_t i, double t[N_SECTIONS])
 {
     const Hemisphere *h = &b->h;
     IrradianceEstimate e;
-    double t0 = seconds();
+    double t0 = processor_seconds();
     trace(b, i);
-    double t1 = seconds();
+    double t1 = processor_seconds();
     direct(b);
-    double t2 = seconds();
+    double t2 = processor_seconds();
     sheen_estimate_irradiance(h->strata, h->directions, h->L, h->distance, &e);
-    double t3 = seconds();
+    double t3 = processor_seconds();
     t[TRACE] += t1 - t0;
     t[DIRECT] += t2 - t1;
     t[ESTIMATE] += t3 - t2;
@@ -263,21 +249,21 @@ static void whole_gather(Bench *b, size_t i, double t[N_SECTIONS])
 static void trace_parts(Bench *b, size_t i, double t[N_SECTIONS])
 {
     Hemisphere *h = &b->h;
-    double t0 = seconds();
+    double t0 = processor_seconds();
     sheen_hemisphere_directions(key_of(i), h);
-    double t1 = seconds();
+    double t1 = processor_seconds();
     t[DIRECTIONS] += t1 - t0;
     bare_gather(b, i); // the hits
     uint64_t specular = 0;
     float sum = 0.0f;
-    double t2 = seconds();
+    double t2 = processor_seconds();
     for (uint32_t k = 0; k < h->cells; ++k) {
         SheenSampler sampler = sampler_make(key_of(i), k);
         Followed f;
         sheen_follow(&b->work, &h->rays[k], &h->hits[k], &sampler, &specular, &f);
         sum += f.emitted.g + f.throughput.g + f.direction.x + f.point.n.x + f.point.origin.x + f.point.reflectance.g;
     }
-    double t3 = seconds();
+    double t3 = processor_seconds();
     t[SURFACES] += t3 - t2;
     keep(&b->sum, (double)(h->directions[0].x + sum));
 }
@@ -289,19 +275,19 @@ static void direct_parts(Bench *b, size_t i, double t[N_SECTIONS])
     trace(b, i);
     direct(b);
     float sum = 0.0f;
-    double t0 = seconds();
+    double t0 = processor_seconds();
     for (size_t k = 0; k < h->n_vertices; ++k) {
         float u = h->numbers[k].choice;
         b->probability[k] = sheen_lights_choose(b->lights, h->points[k].p, h->points[k].n, &u, &b->light[k]);
     }
-    double t1 = seconds();
+    double t1 = processor_seconds();
     for (size_t k = 0; k < h->n_vertices; ++k) {
         LightSample s;
         if (b->probability[k] > 0.0f &&
             sheen_light_sample(b->lights, b->light[k], h->points[k].p, h->numbers[k].place, &s))
             sum += s.pdf + s.radiance.g + s.wi.x + s.target.x;
     }
-    double t2 = seconds();
+    double t2 = processor_seconds();
     keep(&b->sum, (double)sum);
     t[CHOOSE] += t1 - t0;
     t[SAMPLE] += t2 - t1;

@@ -19,11 +19,11 @@
 // Each number is the median of 7 runs, in CPU time of this process.
 #include "base/hash.h"
 #include "basis/rotation.h"
+#include "timing.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 enum { N_RUNS = 7, DIRECTIONS = 1024, LANES = 16, CHAINS = 12 };
 
@@ -45,19 +45,6 @@ typedef struct Bench {
 
 // ---- time -------------------------------------------------------------------------------------------------------
 
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static int by_value(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // Does something `count` times.
 typedef void Task(Bench *b, size_t count);
 
@@ -67,14 +54,14 @@ static double time_of(Bench *b, Task *task)
     size_t count = 1;
     double t = 0.0, run[N_RUNS];
     for (; t < 0.3 * RUN_SECONDS; count *= 4) {
-        double start = seconds();
+        double start = processor_seconds();
         task(b, count);
-        t = seconds() - start;
+        t = processor_seconds() - start;
     }
     for (int i = 0; i < N_RUNS; ++i) {
-        double start = seconds();
+        double start = processor_seconds();
         task(b, count);
-        run[i] = 1e9 * (seconds() - start) / (double)count;
+        run[i] = 1e9 * (processor_seconds() - start) / (double)count;
     }
     qsort(run, N_RUNS, sizeof *run, by_value);
     return run[N_RUNS / 2];

@@ -3,20 +3,12 @@
 #include "base/hash.h"
 #include "light/light.h"
 #include "scene/builder.h"
+#include "timing.h"
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 #define N_POINTS 1000000u
-
-// Of this process alone: other programs do not count.
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static float uniform(uint32_t i, uint32_t dim)
 {
@@ -61,18 +53,18 @@ static void run(const char *name, SheenShapeKind kind, uint32_t n)
     add_lamps(builder, kind, n);
     if (sheen_builder_commit(&builder, &scene)) exit(1);
     if (sheen_lights_create(scene, SHEEN_ENVIRONMENT_WHOLE, NULL, &lights)) exit(1);
-    double sum = 0.0, start = seconds();
+    double sum = 0.0, start = processor_seconds();
     for (uint32_t i = 0; i < N_POINTS; ++i) {
         float u = uniform(i, 5);
         uint32_t light;
         sum += (double)sheen_lights_choose(lights, point(i), v3(0, 0, 1), &u, &light);
     }
-    double middle = seconds();
+    double middle = processor_seconds();
     for (uint32_t i = 0; i < N_POINTS; ++i) {
         LightSample s;
         if (sheen_light_sample(lights, i % n, point(i), v2(uniform(i, 5), uniform(i, 6)), &s)) sum += (double)s.pdf;
     }
-    double end = seconds(), scale = 1e9 / N_POINTS;
+    double end = processor_seconds(), scale = 1e9 / N_POINTS;
     printf("%-10s %6u lights: choose %7.1f ns, sample %6.1f ns (%g)\n", name, n, (middle - start) * scale,
            (end - middle) * scale, sum);
     sheen_lights_destroy(&lights);

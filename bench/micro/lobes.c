@@ -3,11 +3,11 @@
 #include "base/hash.h"
 #include "io/mitsuba.h"
 #include "material/lobe_table.h"
+#include "timing.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { N_READINGS = 100000, N_COPIES = 20 };
 
@@ -18,14 +18,6 @@ enum { N_READINGS = 100000, N_COPIES = 20 };
 #define TEXTURED                                                                                                       \
     "<texture type='checkerboard' name='roughness'><float name='color0' value='0.01'/><float name='color1' "           \
     "value='1'/></texture>"
-
-// Of this process alone: other programs do not count.
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /** A scene of squares, one of each material. */
 static SheenScene *scene_of(const char *const bsdf[], size_t n)
@@ -45,14 +37,14 @@ static double reading_time(const SheenScene *scene, const SheenLobeTables *table
     static Rgb c[SHEEN_BASIS_MAX];
     SurfacePoint point = {.ns = {0, 0, 1}, .ng = {0, 0, 1}, .instance = SHEEN_NONE};
     Bsdf bsdf = sheen_bsdf_at(scene, &point);
-    double start = seconds();
+    double start = processor_seconds();
     for (uint32_t i = 0; i < N_READINGS; ++i) {
         float z = 0.1f + 0.9f * hash_to_unit(hash_u32(i)), phi = 6.28f * hash_to_unit(hash_u32(~i));
         LobeReading reading;
         sheen_lobe_table_read(tables, basis, &bsdf, v3(sqrtf(1 - z * z) * cosf(phi), sqrtf(1 - z * z) * sinf(phi), z),
                               c, &reading);
     }
-    return (seconds() - start) / N_READINGS * 1e9;
+    return (processor_seconds() - start) / N_READINGS * 1e9;
 }
 
 static void run(const char *name, const char *const bsdf[], size_t n, unsigned order)
@@ -62,9 +54,9 @@ static void run(const char *name, const char *const bsdf[], size_t n, unsigned o
     SheenLobeTables *tables;
     const SheenLobeTableDesc desc = {.order = order};
     if (sheen_pool_create(1, &pool)) exit(1);
-    double start = seconds();
+    double start = processor_seconds();
     if (sheen_lobe_tables_create(NULL, scene, &desc, pool, NULL, &tables)) exit(1);
-    double time = seconds() - start;
+    double time = processor_seconds() - start;
     printf("%-34s order %2u: %8.2f ms, reading %6.0f ns HSH %6.0f ns SH\n", name, order, time * 1e3,
            reading_time(scene, tables, SHEEN_BASIS_HSH), reading_time(scene, tables, SHEEN_BASIS_SH));
     sheen_lobe_tables_destroy(&tables);

@@ -11,10 +11,10 @@
 // over 64 gathers, in CPU time of this process.
 #include "base/hash.h"
 #include "gather/radiance.h"
+#include "timing.h"
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 enum { RAYS = 1024, N_GATHERS = 64, N_RUNS = 5, N_METHODS = 5 };
 enum { PROJECTION = SHEEN_GRADIENT_NONE + 1 };
@@ -33,19 +33,6 @@ typedef struct Gather {
     Rgb L[RAYS];
     float distance[RAYS];
 } Gather;
-
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static int by_value(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 static void make(SheenStrata s, uint32_t key, Gather *g)
 {
@@ -78,9 +65,9 @@ static double median(const SheenRadianceTables *tables, SheenBasis basis, unsign
 {
     double times[N_RUNS];
     for (int r = -1; r < N_RUNS; ++r) { // the first warms up
-        double start = seconds();
+        double start = processor_seconds();
         for (int i = 0; i < N_GATHERS; ++i) *sum += estimate(tables, basis, n, gradient, &gathers[i]);
-        if (r >= 0) times[r] = seconds() - start;
+        if (r >= 0) times[r] = processor_seconds() - start;
     }
     qsort(times, N_RUNS, sizeof *times, by_value);
     return times[N_RUNS / 2] / N_GATHERS;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrator/gather_light.h"
 
+#include <stdlib.h>
+
 // A record may have as many times the error that is aimed at as its reach is enlarged, up to so many.
 static const float error_growth_max = 3.0f;
 enum {
@@ -50,9 +52,28 @@ static void choose_guide(const SheenWork *work, const SheenDeep *deep, const Dif
     sheen_guide_choose(sheen_deep_hot_spots(deep), p->p, &h->frame, h->strata, mean, SHEEN_GATHER_ERROR, &h->guide);
 }
 
-void sheen_gather_light(const SheenWork *work, const SheenDeep *deep, const DiffusePoint *point, float R_min,
-                        uint32_t key, Hemisphere *h, SheenStats *stats)
+bool sheen_gatherer_init(const SheenWork *work, const SheenDeep *deep, SheenStrata strata, SheenGatherer *out)
 {
+    *out = (SheenGatherer){work, deep, sheen_pool_size(work->pool), NULL};
+    out->scratch = calloc(out->workers, sizeof *out->scratch);
+    for (unsigned i = 0; i < out->workers; ++i)
+        if (!out->scratch || !sheen_hemisphere_reserve(&out->scratch[i], strata)) return false;
+    return true;
+}
+
+void sheen_gatherer_free(SheenGatherer *g)
+{
+    for (unsigned i = 0; i < g->workers && g->scratch; ++i) sheen_hemisphere_free(&g->scratch[i]);
+    free(g->scratch);
+    *g = (SheenGatherer){0};
+}
+
+const Hemisphere *sheen_gather_light(const SheenGatherer *gatherer, const DiffusePoint *point, float R_min,
+                                     uint32_t key, unsigned worker, SheenStats *stats)
+{
+    const SheenWork *work = gatherer->work;
+    const SheenDeep *deep = gatherer->deep;
+    Hemisphere *h = &gatherer->scratch[worker];
     unsigned bounces = work->options.bounces;
     sheen_hemisphere_begin(point, key, h);
     if (deep) choose_guide(work, deep, point, h);
@@ -68,4 +89,5 @@ void sheen_gather_light(const SheenWork *work, const SheenDeep *deep, const Diff
             h->L[i] = rgb_gray(0.0f);
             ++stats->nonfinite_samples;
         }
+    return h;
 }

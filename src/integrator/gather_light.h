@@ -9,16 +9,30 @@
 /** Relative standard error of the mean over a gather's strata that its rays aim at. */
 #define SHEEN_GATHER_ERROR 0.03f
 
+/** What all gathers of one kind share: where light beyond the first bounce comes from, and a buffer for each worker. */
+typedef struct SheenGatherer {
+    const SheenWork *work;
+    const SheenDeep *deep; // NULL when that light is traced as paths, or when there is none
+    unsigned workers;
+    Hemisphere *scratch; // [workers], of the same strata
+} SheenGatherer;
+
 /**
- * Gathers the light over a point into h->L, without what comes straight from lamps. Non-finite values are counted and
- * taken for black.
- * @param deep   light beyond the first bounce; NULL when it is traced as paths, or when there is none
+ * @param strata  cosine-weighted or uniform
+ * @return false when out of memory; *out is to be freed all the same
+ */
+bool sheen_gatherer_init(const SheenWork *work, const SheenDeep *deep, SheenStrata strata, SheenGatherer *out);
+void sheen_gatherer_free(SheenGatherer *gatherer);
+
+/**
+ * Gathers the light over a point, without what comes straight from lamps. Non-finite values are counted and taken for
+ * black.
  * @param R_min  the least radius that the record will have, metres: where it is more than the harmonic mean distance
  * the record counts beside several others wherever it is read, and may be noisier than the aim
  * @param key    of all random numbers
- * @param h      reserved for its strata, cosine-weighted or uniform
+ * @return the worker's buffer, until its next gather
  */
-void sheen_gather_light(const SheenWork *work, const SheenDeep *deep, const DiffusePoint *point, float R_min,
-                        uint32_t key, Hemisphere *h, SheenStats *stats);
+const Hemisphere *sheen_gather_light(const SheenGatherer *gatherer, const DiffusePoint *point, float R_min,
+                                     uint32_t key, unsigned worker, SheenStats *stats);
 
 #endif

@@ -7,11 +7,8 @@
 #include <stdlib.h>
 
 struct SheenIrradianceMaker {
-    const SheenWork *work;
-    const SheenDeep *deep;
     SheenIrradianceCache *cache;
-    unsigned workers;
-    Hemisphere *scratch; // [workers]
+    SheenGatherer gatherer;
 };
 
 SheenStatus sheen_irradiance_maker_create(const SheenWork *work, const SheenDeep *deep, SheenIrradianceCache *cache,
@@ -20,12 +17,9 @@ SheenStatus sheen_irradiance_maker_create(const SheenWork *work, const SheenDeep
     *out = NULL;
     SheenIrradianceMaker *m = calloc(1, sizeof *m);
     if (!m) return SHEEN_ERR_NOMEM;
-    *m = (SheenIrradianceMaker){.work = work, .deep = deep, .cache = cache, .workers = sheen_pool_size(work->pool)};
-    m->scratch = calloc(m->workers, sizeof *m->scratch);
+    m->cache = cache;
     SheenStrata strata = sheen_strata_cosine(work->options.gather_rays);
-    bool ok = m->scratch != NULL;
-    for (unsigned i = 0; i < m->workers && ok; ++i) ok = sheen_hemisphere_reserve(&m->scratch[i], strata);
-    if (!ok) {
+    if (!sheen_gatherer_init(work, deep, strata, &m->gatherer)) {
         sheen_irradiance_maker_destroy(&m);
         return SHEEN_ERR_NOMEM;
     }
@@ -35,11 +29,9 @@ SheenStatus sheen_irradiance_maker_create(const SheenWork *work, const SheenDeep
 
 void sheen_irradiance_maker_destroy(SheenIrradianceMaker **maker)
 {
-    SheenIrradianceMaker *m = maker ? *maker : NULL;
-    if (!m) return;
-    for (unsigned i = 0; i < m->workers && m->scratch; ++i) sheen_hemisphere_free(&m->scratch[i]);
-    free(m->scratch);
-    free(m);
+    if (!maker || !*maker) return;
+    sheen_gatherer_free(&(*maker)->gatherer);
+    free(*maker);
     *maker = NULL;
 }
 
@@ -47,10 +39,10 @@ static void make(void *user, const ShadingPoint *p, uint32_t key, unsigned worke
                  void *out)
 {
     const SheenIrradianceMaker *m = user;
-    const SheenOptions *o = &m->work->options;
-    Hemisphere *h = &m->scratch[worker];
+    const SheenOptions *o = &m->gatherer.work->options;
     IrradianceLight *light = out;
-    sheen_gather_light(m->work, m->deep, &p->point, record_least_radius(o, p->footprint), key, h, stats);
+    float R_min = record_least_radius(o, p->footprint);
+    const Hemisphere *h = sheen_gather_light(&m->gatherer, &p->point, R_min, key, worker, stats);
     IrradianceEstimate e;
     sheen_estimate_irradiance(h->strata, h->directions, h->L, h->distance, &e);
     *record = (Record){.p = p->point.p, .n = p->point.n, .error = h->error};

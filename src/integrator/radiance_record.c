@@ -9,13 +9,17 @@
 #include <string.h>
 
 struct SheenRadianceMaker {
-    const SheenWork *work;
-    const SheenDeep *deep;
     SheenRadianceCache *cache;
+    SheenGatherer gatherer;
     SheenRadianceTables *tables;
-    unsigned workers;
-    Hemisphere *scratch; // [workers]
 };
+
+// A gather needs several rays for each coefficient.
+static SheenStrata strata_for(const SheenOptions *o, unsigned order)
+{
+    uint32_t least = 16 * (uint32_t)basis_size(order);
+    return sheen_strata_uniform(o->gather_rays > least ? o->gather_rays : least);
+}
 
 SheenStatus sheen_radiance_maker_create(const SheenWork *work, const SheenDeep *deep, SheenRadianceCache *cache,
                                         SheenRadianceMaker **out)
@@ -23,15 +27,10 @@ SheenStatus sheen_radiance_maker_create(const SheenWork *work, const SheenDeep *
     *out = NULL;
     SheenRadianceMaker *m = calloc(1, sizeof *m);
     if (!m) return SHEEN_ERR_NOMEM;
-    *m = (SheenRadianceMaker){.work = work, .deep = deep, .cache = cache, .workers = sheen_pool_size(work->pool)};
-    m->scratch = calloc(m->workers, sizeof *m->scratch);
-    // A gather needs several rays for each coefficient.
-    uint32_t least = 16 * (uint32_t)basis_size(cache->order), rays = work->options.gather_rays;
-    SheenStrata strata = sheen_strata_uniform(rays > least ? rays : least);
-    bool ok = m->scratch != NULL;
-    for (unsigned i = 0; i < m->workers && ok; ++i) ok = sheen_hemisphere_reserve(&m->scratch[i], strata);
-    SheenStatus status =
-        ok ? sheen_radiance_tables_create(strata, cache->basis, cache->order, &m->tables) : SHEEN_ERR_NOMEM;
+    m->cache = cache;
+    SheenStrata strata = strata_for(&work->options, cache->order);
+    SheenStatus status = sheen_radiance_tables_create(strata, cache->basis, cache->order, &m->tables);
+    if (status == SHEEN_OK && !sheen_gatherer_init(work, deep, strata, &m->gatherer)) status = SHEEN_ERR_NOMEM;
     if (status != SHEEN_OK) sheen_radiance_maker_destroy(&m);
     *out = m;
     return status;
@@ -39,12 +38,10 @@ SheenStatus sheen_radiance_maker_create(const SheenWork *work, const SheenDeep *
 
 void sheen_radiance_maker_destroy(SheenRadianceMaker **maker)
 {
-    SheenRadianceMaker *m = maker ? *maker : NULL;
-    if (!m) return;
-    for (unsigned i = 0; i < m->workers && m->scratch; ++i) sheen_hemisphere_free(&m->scratch[i]);
-    free(m->scratch);
-    sheen_radiance_tables_destroy(&m->tables);
-    free(m);
+    if (!maker || !*maker) return;
+    sheen_gatherer_free(&(*maker)->gatherer);
+    sheen_radiance_tables_destroy(&(*maker)->tables);
+    free(*maker);
     *maker = NULL;
 }
 
@@ -75,10 +72,10 @@ static void make(void *user, const ShadingPoint *p, uint32_t key, unsigned worke
                  void *out)
 {
     const SheenRadianceMaker *m = user;
-    const SheenOptions *o = &m->work->options;
+    const SheenOptions *o = &m->gatherer.work->options;
     const SheenRadianceCache *cache = m->cache;
-    Hemisphere *h = &m->scratch[worker];
-    sheen_gather_light(m->work, m->deep, &p->point, record_least_radius(o, p->footprint), key, h, stats);
+    float R_min = record_least_radius(o, p->footprint);
+    const Hemisphere *h = sheen_gather_light(&m->gatherer, &p->point, R_min, key, worker, stats);
     float *light = out;
     memset(light, 0, radiance_light_floats(cache) * sizeof *light);
     Rgb *parts[3];
