@@ -211,6 +211,25 @@ static void test_harmonic_mean(void **state)
     assert_true(fabs((double)sheen_harmonic_mean(CELLS, r) - 1.9738404282780409) < 1e-5);
 }
 
+// A record whose gradient holds for a tenth of a metre, and is read up to half a metre away: what it says there must
+// stay within what it says at a tenth, whatever the harmonic mean distance.
+static void test_enlarged_gradient(void **state)
+{
+    (void)state;
+    IrradianceEstimate e = {.E = rgb_gray(10.0f), .translation = {{60, 60, 60}, {80, 80, 80}}, .R = 1.0f};
+    assert_float_equal(estimate_gradient_radius(&e), 0.1f, 1e-6f); // 10 / hypot(60, 80)
+    IrradianceEstimate same = e;
+    estimate_enlarge(0.1f, 0.1f, &same); // read no farther
+    assert_true(same.translation[0].r == 60.0f && same.translation[1].b == 80.0f);
+    estimate_enlarge(estimate_gradient_radius(&e), 0.5f, &e);
+    assert_float_equal(0.5f * hypotf(e.translation[0].g, e.translation[1].g), 10.0f, 1e-4f);
+    IrradianceEstimate black = {.translation = {{1, 1, 1}, {0, 0, 0}}, .R = 1.0f};
+    estimate_enlarge(estimate_gradient_radius(&black), 0.5f, &black); // E of 0 stays 0
+    assert_true(rgb_is_black(black.translation[0]));
+    IrradianceEstimate even = {.E = rgb_gray(1.0f), .R = 0.3f};
+    assert_true(estimate_gradient_radius(&even) == 0.3f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -219,6 +238,7 @@ int main(void)
         cmocka_unit_test(test_gradient_converges_to_dense_quadrature),
         cmocka_unit_test(test_rotation_gradient_is_the_derivative),
         cmocka_unit_test(test_harmonic_mean),
+        cmocka_unit_test(test_enlarged_gradient),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
