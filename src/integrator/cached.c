@@ -80,7 +80,7 @@ static void cached_free(Cached *c)
 static SheenStatus create_radiance(Cached *c, SheenBasis basis)
 {
     const SheenWork *w = c->work;
-    bool tilted = w->options.basis != SHEEN_BASIS_AUTO;
+    bool tilted = w->options.basis == SHEEN_BASIS_ALL_HSH;
     SheenStatus status =
         sheen_radiance_cache_create(basis, sheen_glossy_cache_order(w->glossy), tilted, w->options.accuracy,
                                     w->options.neighbor_clamping, &w->scene->bounds, &c->caches.radiance[basis]);

@@ -48,7 +48,10 @@ void sheen_radiance_maker_destroy(SheenRadianceMaker **maker)
 static double square_sum(size_t n, const Rgb v[])
 {
     double sum = 0.0;
-    for (size_t i = 0; i < n; ++i) sum += (double)sqrf(rgb_luminance(v[i]));
+    for (size_t i = 0; i < n; ++i) {
+        double y = (double)rgb_luminance(v[i]); // whose square is beyond floats in the faintest and brightest scenes
+        sum += y * y;
+    }
     return sum;
 }
 

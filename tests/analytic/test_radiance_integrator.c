@@ -63,10 +63,10 @@ static void add_thing(SheenBuilder *b, Thing thing, uint32_t material)
     if (!is_board(thing)) kit_sphere(b, v3(0, 0.3f, 0), 0.5f, thing == BALL_BEHIND, material);
 }
 
-static void add_lamp(SheenBuilder *b)
+static void add_lamp(SheenBuilder *b, float brightness)
 {
     uint32_t lamp = kit_quad(b, v3(-0.3f, -0.6f, 0.97f), v3(0, 0.6f, 0), v3(0.6f, 0, 0), kit_diffuse(b, 0.0f));
-    sheen_builder_add_area_light(b, lamp, rgb(4.0f, 5.0f, 3.0f));
+    sheen_builder_add_area_light(b, lamp, rgb_scale(rgb(4.0f, 5.0f, 3.0f), brightness));
 }
 
 // The inside of the cube [-1, 1]^3 but for its back, y = 1, which is the board's place: walls of different albedos, so
@@ -88,15 +88,20 @@ static void add_camera(SheenBuilder *b, Thing thing)
         kit_camera(b, v3(0.2f, -0.95f, 0.2f), v3(0, 0.3f, 0), v3(0, 0, 1), 0.6f);
 }
 
-static Stage room(Thing thing, const Gloss *gloss)
+static Stage room_lit(Thing thing, const Gloss *gloss, float brightness)
 {
     SheenBuilder *b = kit_begin();
     add_walls(b);
     if (!is_board(thing)) kit_quad(b, v3(-1, 1, -1), v3(2, 0, 0), v3(0, 0, 2), kit_diffuse(b, 0.5f));
-    add_lamp(b);
+    add_lamp(b, brightness);
     add_thing(b, thing, add_gloss(b, gloss));
     add_camera(b, thing);
     return stage_end(b, 2);
+}
+
+static Stage room(Thing thing, const Gloss *gloss)
+{
+    return room_lit(thing, gloss, 1.0f);
 }
 
 static SheenRenderSettings small(uint32_t bounces)
@@ -441,9 +446,30 @@ static void test_seen_through_other_things(void **state)
         Stage stage = room_behind(before, true);
         SheenRenderSettings s = small(8);
         s.width = s.height = 24;
-        Reference r = reference(&stage, &s, 128);
+        Reference r = reference(&stage, &s, 64);
         check_both(&stage, &s, &r, before == MIRROR ? 0.05 : MEAN, name[before]);
         sheen_film_destroy(&r.film);
+        stage_free(&stage);
+    }
+}
+
+// ---- any brightness ---------------------------------------------------------------------------------------------
+
+// Light whose squares are beyond floats, far up and far down, makes the same picture. Variances of a gather do
+// underflow and overflow, so that a few rays go elsewhere: 0.3 % of the mean.
+static void test_any_brightness(void **state)
+{
+    (void)state;
+    static const float brightness[] = {0x1p0f, 0x1p-80f, 0x1p80f};
+    double mean[3];
+    for (int i = 0; i < 3; ++i) {
+        Stage stage = room_lit(BOARD, &phong, brightness[i]);
+        SheenRenderSettings s = small(2);
+        SheenFilm *film = stage_render(&stage, &s, NULL);
+        mean[i] = film_mean(film) / (double)brightness[i];
+        show("brightness %g: mean %.6g\n", (double)brightness[i], mean[i]);
+        assert_true(fabs(mean[i] / mean[0] - 1.0) < 0.01);
+        sheen_film_destroy(&film);
         stage_free(&stage);
     }
 }
@@ -482,7 +508,7 @@ static void test_no_diffuse_surface(void **state)
     SheenBuilder *b = kit_begin();
     uint32_t m = add_gloss(b, &metal);
     kit_box(b, m, 0.0f);
-    add_lamp(b);
+    add_lamp(b, 1.0f);
     add_camera(b, BOARD);
     Stage stage = stage_end(b, 2);
     double mean = 0.0;
@@ -513,6 +539,7 @@ int main(void)
         cmocka_unit_test(test_soft_sky),
         cmocka_unit_test(test_no_diffuse_surface),
         cmocka_unit_test(test_seen_through_other_things),
+        cmocka_unit_test(test_any_brightness),
         cmocka_unit_test(test_nothing_to_cache),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
