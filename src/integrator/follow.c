@@ -88,6 +88,8 @@ void sheen_follow(const SheenWork *work, const Ray *ray, const Hit *hit, SheenSa
         }
         Bsdf bsdf;
         sheen_bsdf_look_up(work->scene, &s, &bsdf);
+        out->glossy = sheen_bsdf_is_rough(&bsdf, wide_roughness);
+        if (out->glossy) out->surface = s;
         Rgb found = out->specular > 0 ? rgb_mul(out->throughput, out->emitted) : rgb_gray(0.0f);
         SheenStep step = sheen_step(&s, &bsdf, wo, sampler, &out->throughput, &next, &out->point);
         out->scatters = step == SHEEN_STEP_SCATTERS;

@@ -58,10 +58,13 @@ Vec3 sheen_seen_from(const SurfacePoint *s, const Frame *frame, Vec3 wo);
 /** Where a ray ended. */
 typedef struct Followed {
     bool scatters;     // `point` is set
+    bool glossy;       // ended on rough glossy lobes, none of which is ever followed: `surface` is set, whether or not
+                       // the one direction that was drawn scatters
     bool escaped;      // left the scene along `direction`
     unsigned specular; // mirrors and panes on the way
     unsigned passages; // holes
     DiffusePoint point;
+    SurfacePoint surface;
     Vec3 direction; // of the last segment
     Rgb throughput; // of the mirrors and panes
     Rgb emitted;    // radiance that the last surface emits back along the last segment

@@ -76,6 +76,7 @@ const Hemisphere *sheen_gather_light(const SheenGatherer *gatherer, const Diffus
     Hemisphere *h = &gatherer->scratch[worker];
     unsigned bounces = work->options.bounces;
     sheen_hemisphere_begin(point, key, h);
+    h->gloss = true;
     if (deep) choose_guide(work, deep, point, h);
     sheen_hemisphere_trace(work, point, bounces, h, stats);
     light_vertices(work, deep, h, stats);

@@ -2,6 +2,7 @@
 #include "integrator/hemisphere.h"
 
 #include "gather/allocate.h"
+#include "integrator/glossy.h"
 #include "math/warp.h"
 
 #include <stdlib.h>
@@ -95,19 +96,45 @@ static Rgb caustic_of(const SheenWork *work, const Followed *f)
     return rgb_add(rgb_mul(f->throughput, hard), f->passed);
 }
 
+// A Kronecker sequence over the gather's light samples, in fixed point: neighboring strata ask distant parts of the
+// lights. The steps are the powers of 1 / 1.2207..., the root of x^4 = x + 1. Source: roberts2018-quasirandom.
+static LightNumbers light_numbers(uint32_t key, uint32_t use, uint32_t index)
+{
+    uint32_t shift = hash_combine(key, KEY_LIGHT + (use << 8)), x = shift, y = hash_u32(shift), z = hash_u32(y);
+    return (LightNumbers){SHEEN_NONE,
+                          hash_to_unit(x + index * 0xd1b54a33u),
+                          {hash_to_unit(y + index * 0xabc98388u), hash_to_unit(z + index * 0x8cb92ba7u)}};
+}
+
+// Direct light that a glossy surface at the end of a way sends back along it, by one light sample.
+static Rgb glossy_direct(const SheenWork *work, const Followed *f, LightNumbers numbers, SheenStats *stats)
+{
+    SeenSurface v;
+    v.s = f->surface;
+    sheen_seen_surface(work, v3_neg(f->direction), &v);
+    Rgb L = sheen_glossy_lit_once(work, &v, numbers, stats);
+    return rgb_finite(L) ? L : rgb_gray(0.0f);
+}
+
 // What one ray of the gather, or of an extension of one of its vertices, ended on.
 // @param weight  radiance in the cell per radiance along the ray
 static void receive(const SheenWork *work, const Followed *f, Rgb weight, uint32_t cell, uint32_t ray, unsigned bounces,
-                    Hemisphere *h)
+                    Hemisphere *h, SheenStats *stats)
 {
     Rgb through = rgb_mul(weight, f->throughput);
     if (f->escaped)
         h->L[cell] = rgb_add(h->L[cell], rgb_mul(through, sheen_environment_soft(work->lights, f->direction)));
     if (f->specular > 0 && f->scatters) h->specular[cell] = 1; // the soft sky behind a pane is as good as without it
     h->caustic[cell] = rgb_add(h->caustic[cell], rgb_mul(weight, caustic_of(work, f)));
-    if (!f->scatters || bounces == 0) return;
-    h->vertices[h->n_vertices++] = (GatherVertex){
-        f->point, rgb_scale(rgb_mul(through, f->point.reflectance), SHEEN_INV_PI), cell, ray, f->distance, bounces};
+    if (bounces == 0) return;
+    bool lit = h->gloss && f->glossy && sheen_lights_count(work->lights) > 0;
+    if (lit) {
+        Rgb L = glossy_direct(work, f, light_numbers(h->key, bounces, ray), stats);
+        h->L[cell] = rgb_add(h->L[cell], rgb_mul(through, L));
+    }
+    if (!f->scatters) return;
+    Rgb reflected = rgb_scale(rgb_mul(through, f->point.reflectance), SHEEN_INV_PI);
+    h->vertices[h->n_vertices++] = (GatherVertex){f->point, reflected, cell, ray, f->distance, bounces, lit};
 }
 
 void sheen_hemisphere_directions(uint32_t key, Hemisphere *h)
@@ -163,6 +190,7 @@ void sheen_hemisphere_begin(const DiffusePoint *point, uint32_t key, Hemisphere 
     h->frame = frame_from_normal(point->n);
     h->error = 0.0f;
     h->guide.n = 0;
+    h->gloss = false;
 }
 
 void sheen_hemisphere_trace(const SheenWork *work, const DiffusePoint *point, unsigned bounces, Hemisphere *h,
@@ -183,7 +211,7 @@ void sheen_hemisphere_trace(const SheenWork *work, const DiffusePoint *point, un
         sheen_follow(work, &h->rays[i], &h->hits[i], &sampler, &stats->rays_specular, &f);
         h->distance[i] = maxf(f.distance, 1e-20f);
         h->normals[i] = f.scatters ? frame_to_local(&h->frame, f.point.ng) : v3_neg(h->directions[i]);
-        receive(work, &f, rgb_gray(1.0f), i, i, bounces, h);
+        receive(work, &f, rgb_gray(1.0f), i, i, bounces, h, stats);
         if (f.specular > 0) h->through[n_through++] = i;
     }
     // Without a light to ask there is no lamp and no hard part of the sky.
@@ -248,7 +276,7 @@ size_t sheen_hemisphere_refine(const SheenWork *work, const DiffusePoint *point,
         SheenSampler sampler = sampler_make(specular_key, ray);
         Followed f;
         sheen_follow(work, &h->rays[i], &h->hits[i], &sampler, &stats->rays_specular, &f);
-        receive(work, &f, rgb_gray(h->further[i].weight), h->further[i].cell, ray, bounces, h);
+        receive(work, &f, rgb_gray(h->further[i].weight), h->further[i].cell, ray, bounces, h, stats);
     }
     return n;
 }
@@ -287,19 +315,9 @@ size_t sheen_hemisphere_extend(const SheenWork *work, float near, Hemisphere *h,
         SheenSampler sampler = sampler_make(hash_combine(h->key, KEY_SPECULAR + v->bounces), v->ray);
         Followed f;
         sheen_follow(work, &h->rays[i], &h->hits[i], &sampler, &stats->rays_specular, &f);
-        receive(work, &f, v->weight, v->cell, v->ray, v->bounces - 1, h);
+        receive(work, &f, v->weight, v->cell, v->ray, v->bounces - 1, h, stats);
     }
     return taken;
-}
-
-// A Kronecker sequence over the gather's light samples, in fixed point: neighboring strata ask distant parts of the
-// lights. The steps are the powers of 1 / 1.2207..., the root of x^4 = x + 1. Source: roberts2018-quasirandom.
-static LightNumbers light_numbers(uint32_t key, uint32_t use, uint32_t index)
-{
-    uint32_t shift = hash_combine(key, KEY_LIGHT + (use << 8)), x = shift, y = hash_u32(shift), z = hash_u32(y);
-    return (LightNumbers){SHEEN_NONE,
-                          hash_to_unit(x + index * 0xd1b54a33u),
-                          {hash_to_unit(y + index * 0xabc98388u), hash_to_unit(z + index * 0x8cb92ba7u)}};
 }
 
 void sheen_hemisphere_direct(const SheenWork *work, size_t first, uint32_t samples, Hemisphere *h, SheenStats *stats)
@@ -315,7 +333,8 @@ void sheen_hemisphere_direct(const SheenWork *work, size_t first, uint32_t sampl
         stats->rays_shadow +=
             sheen_direct_add(work, n, h->points, h->numbers, 1.0f / (float)samples, &h->direct, h->irradiance);
     }
-    for (size_t i = 0; i < n; ++i) h->L[v[i].cell] = rgb_add(h->L[v[i].cell], rgb_mul(v[i].weight, h->irradiance[i]));
+    for (size_t i = 0; i < n; ++i)
+        if (!v[i].lit) h->L[v[i].cell] = rgb_add(h->L[v[i].cell], rgb_mul(v[i].weight, h->irradiance[i]));
 }
 
 static int compare_descending(const void *a, const void *b)

@@ -15,6 +15,7 @@ typedef struct GatherVertex {
     uint32_t ray;     // number in the gather: keys the random numbers
     float distance;   // length of the way from the vertex before, metres
     unsigned bounces; // b: the light wanted here is direct light and b - 1 bounces; 0: the sky alone
+    bool lit;         // its direct light is in L
 } GatherVertex;
 
 /** Further rays of a gather are at most so many times its strata. */
@@ -30,12 +31,13 @@ typedef struct GatherRay {
 /** Buffers of one worker, and the gather that they hold. */
 typedef struct Hemisphere {
     SheenStrata strata;
-    Frame frame;             // the local frame of `directions`
-    uint32_t key;            // of all random numbers of this gather
-    Guide guide;             // hot spots, for rays beside the first of each stratum
-    Vec3 *directions;        // [cells] local
-    Rgb *L;                  // [cells] radiance so far
-    Rgb *caustic;            // [cells] radiance of emitters seen through mirrors and glass
+    Frame frame;      // the local frame of `directions`
+    uint32_t key;     // of all random numbers of this gather
+    Guide guide;      // hot spots, for rays beside the first of each stratum
+    bool gloss;       // direct light on rough glossy surfaces is what they send here, not the mean of their sides
+    Vec3 *directions; // [cells] local
+    Rgb *L;           // [cells] radiance so far
+    Rgb *caustic;     // [cells] radiance of emitters seen through mirrors and glass
     unsigned char *specular; // [cells] 1 where a mirror or glass lay on the way
     float *distance;         // [cells] to what sends it; INFINITY for the sky
     Vec3 *normals;           // [cells] local, of what sends it, toward the point; along the ray for the sky
@@ -67,7 +69,8 @@ void sheen_hemisphere_free(Hemisphere *h);
 /** Fills h->directions: the jittered strata of a gather, a function of its key alone. */
 void sheen_hemisphere_directions(uint32_t key, Hemisphere *h);
 
-/** Begins a gather at a point: its frame and its key. It has no hot spots until sheen_guide_choose gives it some. */
+/** Begins a gather at a point: its frame and its key. It has no hot spots until sheen_guide_choose gives it some, and
+ *  takes glossy surfaces for Lambertian unless h->gloss is set. */
 void sheen_hemisphere_begin(const DiffusePoint *point, uint32_t key, Hemisphere *h);
 
 /**

@@ -65,6 +65,18 @@ static float lobe_roughness(const BsdfLobe *lobe)
     }
 }
 
+bool sheen_bsdf_is_rough(const Bsdf *bsdf, float least)
+{
+    bool glossy = false;
+    for (uint32_t i = 0; i < bsdf->n_lobes; ++i) {
+        const BsdfLobe *lobe = &bsdf->lobes[i];
+        const BsdfOps *ops = lobe->ops;
+        if (ops->class == SHEEN_BSDF_DELTA || ops->transmits || lobe_roughness(lobe) < least) return false;
+        glossy = glossy || ops->class == SHEEN_BSDF_GLOSSY;
+    }
+    return glossy;
+}
+
 // Whether shadow rays pass the lobe's hole as well. Maps and coatings around a hole turn or weaken what passes.
 static bool is_passage(const BsdfLobe *lobe, const BsdfWay *way)
 {
