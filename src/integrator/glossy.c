@@ -78,12 +78,15 @@ Rgb sheen_glossy_lit(const SheenWork *work, const SeenSurface *v, uint32_t branc
     return L;
 }
 
-Rgb sheen_glossy_lit_once(const SheenWork *work, const SeenSurface *v, LightNumbers numbers, SheenStats *stats)
+Rgb sheen_glossy_lit_once(const SheenWork *work, const SurfacePoint *s, Vec3 wo, LightNumbers numbers,
+                          SheenStats *stats)
 {
-    SeenSurface alone = *v;
-    alone.cached = true; // no ray along it finds anything: the light sample stands for all
-    alone.rest.n_lobes = 0;
-    return light_sample(work, &alone, numbers, 1, stats);
+    SeenSurface v;
+    v.s = *s;
+    sheen_seen_surface(work, wo, &v);
+    v.cached = true; // nothing is left to rays
+    v.rest.n_lobes = 0;
+    return light_sample(work, &v, numbers, 1, stats);
 }
 
 bool sheen_glossy_ray(const SeenSurface *v, SheenSampler *sampler, Ray *ray, Rgb *weight, float *roughness,

@@ -36,8 +36,9 @@ typedef struct GlossyOrigin {
 Rgb sheen_glossy_lit(const SheenWork *work, const SeenSurface *v, uint32_t branch, uint32_t pixel, uint32_t sample,
                      SheenStats *stats);
 
-/** Radiance toward the viewer that one light sample finds for the whole BSDF. */
-Rgb sheen_glossy_lit_once(const SheenWork *work, const SeenSurface *v, LightNumbers numbers, SheenStats *stats);
+/** Radiance that a surface sends along wo as one light sample finds it, where no ray along its glossy part is drawn. */
+Rgb sheen_glossy_lit_once(const SheenWork *work, const SurfacePoint *s, Vec3 wo, LightNumbers numbers,
+                          SheenStats *stats);
 
 /**
  * Draws the ray along the glossy part. @param roughness  gets that of the lobe drawn

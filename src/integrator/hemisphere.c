@@ -106,16 +106,6 @@ static LightNumbers light_numbers(uint32_t key, uint32_t use, uint32_t index)
                           {hash_to_unit(y + index * 0xabc98388u), hash_to_unit(z + index * 0x8cb92ba7u)}};
 }
 
-// Direct light that a glossy surface at the end of a way sends back along it, by one light sample.
-static Rgb glossy_direct(const SheenWork *work, const Followed *f, LightNumbers numbers, SheenStats *stats)
-{
-    SeenSurface v;
-    v.s = f->surface;
-    sheen_seen_surface(work, v3_neg(f->direction), &v);
-    Rgb L = sheen_glossy_lit_once(work, &v, numbers, stats);
-    return rgb_finite(L) ? L : rgb_gray(0.0f);
-}
-
 // What one ray of the gather, or of an extension of one of its vertices, ended on.
 // @param weight  radiance in the cell per radiance along the ray
 static void receive(const SheenWork *work, const Followed *f, Rgb weight, uint32_t cell, uint32_t ray, unsigned bounces,
@@ -129,8 +119,9 @@ static void receive(const SheenWork *work, const Followed *f, Rgb weight, uint32
     if (bounces == 0) return;
     bool lit = h->gloss && f->glossy && sheen_lights_count(work->lights) > 0;
     if (lit) {
-        Rgb L = glossy_direct(work, f, light_numbers(h->key, bounces, ray), stats);
-        h->L[cell] = rgb_add(h->L[cell], rgb_mul(through, L));
+        LightNumbers numbers = light_numbers(h->key, bounces, ray);
+        Rgb L = sheen_glossy_lit_once(work, &f->surface, v3_neg(f->direction), numbers, stats);
+        if (rgb_finite(L)) h->L[cell] = rgb_add(h->L[cell], rgb_mul(through, L));
     }
     if (!f->scatters) return;
     Rgb reflected = rgb_scale(rgb_mul(through, f->point.reflectance), SHEEN_INV_PI);
@@ -322,19 +313,23 @@ size_t sheen_hemisphere_extend(const SheenWork *work, float near, Hemisphere *h,
 
 void sheen_hemisphere_direct(const SheenWork *work, size_t first, uint32_t samples, Hemisphere *h, SheenStats *stats)
 {
-    size_t n = h->n_vertices - first;
-    const GatherVertex *v = h->vertices + first;
-    for (size_t i = 0; i < n; ++i) {
-        h->points[i] = v[i].point;
-        h->irradiance[i] = rgb_gray(0.0f);
+    const GatherVertex *v = h->vertices + first, *end = h->vertices + h->n_vertices;
+    size_t n = 0; // vertices without direct light so far
+    for (; v < end; ++v) {
+        if (v->lit) continue;
+        h->points[n] = v->point;
+        h->irradiance[n++] = rgb_gray(0.0f);
     }
     for (uint32_t s = 0; s < samples; ++s) {
-        for (size_t i = 0; i < n; ++i) h->numbers[i] = light_numbers(h->key, v[i].bounces, v[i].ray * samples + s);
+        size_t i = 0;
+        for (v = h->vertices + first; v < end; ++v)
+            if (!v->lit) h->numbers[i++] = light_numbers(h->key, v->bounces, v->ray * samples + s);
         stats->rays_shadow +=
             sheen_direct_add(work, n, h->points, h->numbers, 1.0f / (float)samples, &h->direct, h->irradiance);
     }
-    for (size_t i = 0; i < n; ++i)
-        if (!v[i].lit) h->L[v[i].cell] = rgb_add(h->L[v[i].cell], rgb_mul(v[i].weight, h->irradiance[i]));
+    size_t i = 0;
+    for (v = h->vertices + first; v < end; ++v)
+        if (!v->lit) h->L[v->cell] = rgb_add(h->L[v->cell], rgb_mul(v->weight, h->irradiance[i++]));
 }
 
 static int compare_descending(const void *a, const void *b)
