@@ -57,4 +57,12 @@ void sheen_rotation_destroy(SheenRotation **rotation);
 void sheen_rotation_apply(const SheenRotation *rotation, SheenEuler e, unsigned channels, const float in[],
                           float out[]);
 
+/** The same from a frame to the world's axes. */
+static inline void sheen_rotation_to_world(const SheenRotation *rotation, const Frame *from, unsigned channels,
+                                           const float in[], float out[])
+{
+    Frame world = frame_world();
+    sheen_rotation_apply(rotation, sheen_euler_between(from, &world), channels, in, out);
+}
+
 #endif

@@ -13,21 +13,16 @@ typedef struct IrradianceLight {
 } IrradianceLight;
 
 /**
- * Irradiance at a shift d and a turn w = n x n' from where the light holds, first order in both; never negative.
+ * Irradiance that a record predicts at (p, n): first order in the shift d and the turn w = n_i x n; never negative.
  * Source: ward1992-gradients eq. (7); the sign of the rotation as in gather/estimate.h.
  */
-static inline Rgb irradiance_extrapolate(const IrradianceLight *light, Vec3 d, Vec3 w)
+static inline Rgb irradiance_predict(const Record *record, const IrradianceLight *light, Vec3 p, Vec3 n)
 {
+    Vec3 d = v3_sub(p, record->p), w = v3_cross(record->n, n);
     const Vec3 *t = light->translation, *r = light->rotation;
     return rgb(maxf(0.0f, light->E.r + v3_dot(d, t[0]) + v3_dot(w, r[0])),
                maxf(0.0f, light->E.g + v3_dot(d, t[1]) + v3_dot(w, r[1])),
                maxf(0.0f, light->E.b + v3_dot(d, t[2]) + v3_dot(w, r[2])));
-}
-
-/** Irradiance that a record predicts at (p, n). */
-static inline Rgb irradiance_predict(const Record *r, const IrradianceLight *light, Vec3 p, Vec3 n)
-{
-    return irradiance_extrapolate(light, v3_sub(p, r->p), v3_cross(r->n, n));
 }
 
 /**

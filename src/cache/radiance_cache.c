@@ -7,8 +7,6 @@
 // Sums are kept in so many lanes, a multiple of the three colours, and vectors are padded to a multiple of it.
 enum { LANES = 12 };
 
-static const float same_cos = 0.99996f; // half a degree
-
 SheenStatus sheen_radiance_cache_create(SheenBasis basis, unsigned order, bool tilted, float accuracy,
                                         bool neighbor_clamping, const Bounds *bounds, SheenRadianceCache **out)
 {
@@ -19,14 +17,14 @@ SheenStatus sheen_radiance_cache_create(SheenBasis basis, unsigned order, bool t
     c->order = order;
     c->stride = (3 * basis_size(order) + LANES - 1) / LANES * LANES;
     // A record serves where 1 - n . n_i < a^2.
-    float tilt_max = tilted ? acosf(clampf(1.0f - sqrf(accuracy), 0.0f, 1.0f)) : acosf(same_cos);
+    float tilt_max = tilted ? acosf(clampf(1.0f - sqrf(accuracy), 0.0f, 1.0f)) : acosf(SHEEN_SAME_COS);
     SheenStatus status = sheen_store_create(accuracy, neighbor_clamping, bounds, &c->store);
     if (status == SHEEN_OK) status = sheen_rotation_create(basis, order, tilt_max, &c->rotation);
     if (status != SHEEN_OK) {
         sheen_radiance_cache_destroy(&c);
         return status;
     }
-    if (basis == SHEEN_BASIS_HSH && !tilted) c->store->cos_min = same_cos;
+    if (basis == SHEEN_BASIS_HSH && !tilted) c->store->cos_min = SHEEN_SAME_COS;
     *out = c;
     return SHEEN_OK;
 }
@@ -81,7 +79,7 @@ static const LobeVector *in_frame(const SheenRadianceCache *cache, const Frame *
                                   const LobeVector *lobe, LobeVector *turned)
 {
     if (cache->basis == SHEEN_BASIS_SH) return lobe;
-    if (v3_dot(here->t, there->t) > same_cos && v3_dot(here->n, there->n) > same_cos) return lobe;
+    if (v3_dot(here->t, there->t) > SHEEN_SAME_COS && v3_dot(here->n, there->n) > SHEEN_SAME_COS) return lobe;
     turned->used = cache->stride;
     memcpy(turned->c, lobe->c, lobe->used * sizeof *lobe->c);
     memset(turned->c + lobe->used, 0, (turned->used - lobe->used) * sizeof *lobe->c);

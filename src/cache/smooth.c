@@ -7,7 +7,6 @@
 // The expected interpolation error as a share of the split-sphere bound 1/w, which is for the worst of scenes.
 // Measured: smaller shares blur the Cornell box, larger ones leave noise.
 static const float share_of_bound = 0.5f;
-static const float same_cos = 0.99996f; // half a degree
 
 typedef struct Smoothing {
     const SheenRecordStore *wide; // the records, with twice the reach
@@ -60,7 +59,7 @@ static bool find_teachers(const Smoothing *s, uint32_t own, Teachers *out)
         uint32_t other = near.record[i];
         const Record *r = &s->wide->records[other];
         float d2 = v3_length2(v3_sub(at->p, r->p)), cos_n = v3_dot(at->n, r->n);
-        if (alike && !(cos_n > same_cos)) continue;
+        if (alike && !(cos_n > SHEEN_SAME_COS)) continue;
         float w = other == own ? INFINITY : record_weight(minf(r->R_sure, at->R_sure), d2, cos_n);
         float variance = (sqrf(r->error) + sqrf(share_of_bound / w)) * sqrf(contrast(s, own, other));
         if (!(variance > 0.0f)) continue;

@@ -50,11 +50,16 @@ static inline float estimate_gradient_radius(const IrradianceEstimate *e)
     return g > 0.0f ? minf(e->R, maxf(rgb_luminance(e->E), 0.0f) / g) : e->R;
 }
 
-/** Scales the translation gradient down for a record that is used farther than its radius: it would overshoot. */
+/** What a gradient that holds within a radius is scaled by where it is used farther away: it would overshoot. */
+static inline float estimate_gradient_share(float radius, float used)
+{
+    return radius < used ? maxf(radius, 0.0f) / used : 1.0f;
+}
+
+/** Scales the translation gradient down for a record that is used farther than its radius. */
 static inline void estimate_enlarge(float radius, float used, IrradianceEstimate *e)
 {
-    if (!(radius < used)) return;
-    float scale = maxf(radius, 0.0f) / used;
+    float scale = estimate_gradient_share(radius, used);
     for (int i = 0; i < 2; ++i) e->translation[i] = rgb_scale(e->translation[i], scale);
 }
 

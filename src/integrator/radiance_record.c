@@ -90,14 +90,13 @@ static void make(void *user, const ShadingPoint *p, uint32_t key, unsigned worke
     *record = (Record){.p = p->point.p, .n = p->point.n, .error = relative_error(cache->order, &e)};
     float R = o->gradient_clamping ? gradient_radius(n, &e) : e.R;
     record_set_radius(o, p->footprint, R, record);
-    // Farther out than its own radius a gradient would overshoot.
-    float scale = R < record->R_min ? maxf(R, 0.0f) / record->R_min : 1.0f;
+    float scale = estimate_gradient_share(R, record->R_min);
     for (size_t i = 0; i < 2 * cache->stride; ++i) light[cache->stride + i] *= scale;
     if (cache->basis == SHEEN_BASIS_HSH) return;
-    Frame world = {v3(1, 0, 0), v3(0, 1, 0), v3(0, 0, 1)};
-    SheenEuler to_world = sheen_euler_between(&h->frame, &world);
-    for (size_t i = 0; i < 3; ++i)
-        sheen_rotation_apply(cache->rotation, to_world, 3, light + i * cache->stride, light + i * cache->stride);
+    for (size_t i = 0; i < 3; ++i) {
+        float *part = light + i * cache->stride;
+        sheen_rotation_to_world(cache->rotation, &h->frame, 3, part, part);
+    }
 }
 
 static SheenStatus insert(void *user, const Record *record, const void *light)

@@ -19,12 +19,6 @@ Vec3 sheen_lobe_node_direction(const LobeTable *t, unsigned node)
     return v3_normalize(v3(scale * p.x, scale * p.y, scale - 1.0f));
 }
 
-static float smoothstep(float x)
-{
-    x = unit_or_zero(x);
-    return x * x * (3.0f - 2.0f * x);
-}
-
 /** Four nodes at, at + 1, ... of a line, and their weights for even and for odd functions. */
 typedef struct Line {
     unsigned at;

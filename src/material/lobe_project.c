@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "material/lobe_project.h"
 
+#include "math/quadrature.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,25 +19,9 @@ struct LobeQuadrature {
     float *cos_phi, *sin_phi;      // [n_columns][n]: cos(m phi), sin(m phi)
 };
 
-/** The k-th node and weight of Gauss's quadrature with n nodes on [0, 1]. */
-static void gauss_node(unsigned n, unsigned k, double *x, double *w)
-{
-    double z = cos(3.14159265358979324 * (k + 0.75) / (n + 0.5)), slope = 1.0;
-    for (int i = 0; i < 8; ++i) { // Newton's steps, which double the digits
-        double p0 = 1.0, p1 = z;
-        for (unsigned l = 2; l <= n; ++l) {
-            double p2 = ((2.0 * l - 1.0) * z * p1 - (l - 1.0) * p0) / l;
-            p0 = p1, p1 = p2;
-        }
-        slope = n * (z * p1 - p0) / (z * z - 1.0);
-        z -= p1 / slope;
-    }
-    *x = 0.5 + 0.5 * z;
-    *w = 1.0 / ((1.0 - z * z) * slope * slope);
-}
-
 LobeQuadrature *sheen_lobe_quadrature(unsigned n)
 {
+    enum { ROWS_MAX = 20 + 2 * SHEEN_ORDER_MAX };
     const unsigned rows = 20 + 2 * n, columns = 16 + 2 * n;
     const size_t zenith = (size_t)rows * n * (n + 1) / 2, azimuth = (size_t)columns * n;
     LobeQuadrature *q = malloc(sizeof *q + (2 * rows + 2 * zenith + 2 * columns + 2 * azimuth) * sizeof(float));
@@ -46,11 +32,11 @@ LobeQuadrature *sheen_lobe_quadrature(unsigned n)
     q->zenith[0] = at + 2 * rows, q->zenith[1] = q->zenith[0] + zenith;
     q->x = q->zenith[1] + zenith, q->y = q->x + columns;
     q->cos_phi = q->y + columns, q->sin_phi = q->cos_phi + azimuth;
+    double s[ROWS_MAX], w[ROWS_MAX];
+    sheen_quadrature_gauss(rows, s, w);
     for (unsigned i = 0; i < rows; ++i) {
-        double s, w;
-        gauss_node(rows, i, &s, &w);
-        q->cosine[i] = (float)(s * s);
-        q->weight[i] = (float)(2.0 * s * w);
+        q->cosine[i] = (float)(s[i] * s[i]);
+        q->weight[i] = (float)(2.0 * s[i] * w[i]);
         for (int b = 0; b < 2; ++b)
             sheen_basis_zenith((SheenBasis)b, n, q->cosine[i], q->zenith[b] + (size_t)i * n * (n + 1) / 2);
     }

@@ -68,8 +68,7 @@ static Choice choose(const SheenLobeTables *all, const LobeTable *t, const float
     float energy = missing_at(t, data, taps, f, 0), allowed = all->error;
     if (!(energy > 0.0f)) return (Choice){.n = 0};
     float end = missing_at(t, data, taps, f, all->n) / energy;
-    float rest = unit_or_zero((allowed - end) / (0.5f * allowed));
-    Choice c = {.share = rest * rest * (3.0f - 2.0f * rest) * taps->fade, .band = 1.0f};
+    Choice c = {.share = smoothstep((allowed - end) / (0.5f * allowed)) * taps->fade, .band = 1.0f};
     if (!(c.share > 0.0f)) return (Choice){.n = 0};
     float before = 1.0f, error = 1.0f;
     while (c.n < most && !(error <= allowed)) {

@@ -9,6 +9,15 @@ typedef struct Frame {
     Vec3 t, b, n;
 } Frame;
 
+/** Cosine from which on two normals count as the same: half a degree. */
+#define SHEEN_SAME_COS 0.99996f
+
+/** The world's own axes. */
+static inline Frame frame_world(void)
+{
+    return (Frame){v3(1.0f, 0.0f, 0.0f), v3(0.0f, 1.0f, 0.0f), v3(0.0f, 0.0f, 1.0f)};
+}
+
 /** A frame about the unit vector n, the same for the same n. Source: duff2017-onb, listing 3. */
 static inline Frame frame_from_normal(Vec3 n)
 {

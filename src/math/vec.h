@@ -43,6 +43,12 @@ static inline float unit_or_zero(float x)
 {
     return x > 0.0f ? minf(x, 1.0f) : 0.0f;
 }
+/** Rises from 0 at 0 to 1 at 1, level at both ends, and stays there. */
+static inline float smoothstep(float x)
+{
+    x = unit_or_zero(x);
+    return x * x * (3.0f - 2.0f * x);
+}
 static inline float sqrf(float x)
 {
     return x * x;
