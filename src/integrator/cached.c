@@ -60,6 +60,7 @@ static SheenStatus collect_first_points(const SheenWork *work, SheenStats *stats
 /** The caches, and what fills them. */
 typedef struct Cached {
     const SheenWork *work;
+    bool found; // gathers find light that light samples leave out
     SheenCaches caches;
     SheenDeep *deep;
     SheenIrradianceMaker *irradiance;
@@ -136,6 +137,11 @@ static bool gathers_see_light(const SheenScene *scene)
     return lamps && delta;
 }
 
+static bool has_indirect(const SheenWork *work, bool found)
+{
+    return work->options.bounces > 0 || found;
+}
+
 // The glossy points of one basis.
 static SheenStatus fill_radiance(Cached *c, SheenBasis basis, const SeenPoints *seen, SheenStats *stats)
 {
@@ -185,7 +191,7 @@ static SheenStatus fill_first(Cached *c, SheenStats *stats)
     stats->time_visibility += t1 - t0;
     // Where light samples find all direct light, one bounce needs no deep records.
     unsigned bounces = work->options.bounces;
-    bool deeper = bounces > 1 || (bounces == 1 && gathers_see_light(work->scene));
+    bool deeper = bounces > 1 || (bounces == 1 && c->found);
     if (status == SHEEN_OK && deeper && work->options.secondary == SHEEN_SECONDARY_CACHE)
         status = create_deep(c, &points, stats);
     if (status == SHEEN_OK) status = create_caches(c);
@@ -241,10 +247,11 @@ static void count_records(const Cached *c, SheenStats *stats)
     }
 }
 
-SheenStatus sheen_irradiance_render(const SheenWork *work, SheenFilm *film, SheenStats *stats)
+// @param found  gathers find light that light samples leave out
+static SheenStatus render(const SheenWork *work, bool found, SheenFilm *film, SheenStats *stats)
 {
-    Cached c = {.work = work};
-    bool indirect = work->options.bounces > 0 || gathers_see_light(work->scene);
+    Cached c = {.work = work, .found = found};
+    bool indirect = has_indirect(work, found);
     SheenStatus status = indirect ? fill_first(&c, stats) : SHEEN_OK;
     if (status == SHEEN_OK) status = shade_picture(&c, indirect, film, stats);
     count_records(&c, stats);
@@ -252,16 +259,21 @@ SheenStatus sheen_irradiance_render(const SheenWork *work, SheenFilm *film, Shee
     return status;
 }
 
+SheenStatus sheen_irradiance_render(const SheenWork *work, SheenFilm *film, SheenStats *stats)
+{
+    return render(work, gathers_see_light(work->scene), film, stats);
+}
+
 SheenStatus sheen_radiance_render(const SheenWork *work, SheenFilm *film, SheenStats *stats)
 {
     SheenWork with = *work;
     SheenGlossyCache *glossy = NULL;
-    bool indirect = work->options.bounces > 0 || gathers_see_light(work->scene);
+    bool found = gathers_see_light(work->scene);
     double start = sheen_clock_seconds();
-    SheenStatus status = indirect ? sheen_glossy_cache_create(work, &glossy) : SHEEN_OK;
+    SheenStatus status = has_indirect(work, found) ? sheen_glossy_cache_create(work, &glossy) : SHEEN_OK;
     stats->time_fill += sheen_clock_seconds() - start;
     with.glossy = glossy;
-    if (status == SHEEN_OK) status = sheen_irradiance_render(&with, film, stats);
+    if (status == SHEEN_OK) status = render(&with, found, film, stats);
     sheen_glossy_cache_destroy(&glossy);
     return status;
 }

@@ -15,8 +15,6 @@ struct SheenGlossyCache {
 // more is a curved thing made of flat pieces.
 enum { FLAT_NORMALS_MAX = 32 };
 
-static const float same_cos = 0.99996f; // half a degree
-
 static Vec3 corner(const SheenMesh *m, uint32_t triangle, int k)
 {
     return m->p[m->triangles[triangle][k]];
@@ -26,7 +24,7 @@ static Vec3 corner(const SheenMesh *m, uint32_t triangle, int k)
 static bool shaded_flat(const SheenMesh *m, uint32_t triangle, Vec3 n)
 {
     for (int k = 0; k < 3 && m->n; ++k)
-        if (!(fabsf(v3_dot(m->n[m->triangles[triangle][k]], n)) > same_cos)) return false;
+        if (!(fabsf(v3_dot(m->n[m->triangles[triangle][k]], n)) > SHEEN_SAME_COS)) return false;
     return true;
 }
 
@@ -40,7 +38,7 @@ static bool mesh_is_flat(const SheenMesh *m)
         if (!(v3_length2(n) > 0.0f)) continue;
         if (!shaded_flat(m, i, n)) return false;
         unsigned k = 0;
-        while (k < n_found && !(v3_dot(found[k], n) > same_cos)) ++k;
+        while (k < n_found && !(v3_dot(found[k], n) > SHEEN_SAME_COS)) ++k;
         if (k < n_found) continue;
         if (n_found == FLAT_NORMALS_MAX) return false;
         found[n_found++] = n;
@@ -118,11 +116,13 @@ void sheen_glossy_cache_read(const SheenGlossyCache *g, SeenSurface *v, GlossyLo
     v->cached = true;
     v->rest = v->bsdf;
     sheen_bsdf_leave_rest(&v->rest, &reading);
-    if (out->basis == SHEEN_BASIS_SH) {
-        Frame world = {v3(1, 0, 0), v3(0, 1, 0), v3(0, 0, 1)};
-        float *c = &out->coefficients[0].r;
-        sheen_rotation_apply(g->to_world, sheen_euler_between(&v->frame, &world), 3, c, c);
-    } else if (v->wo_l.z < 0.0f) {
-        turn_behind(&v->frame, reading.order, out->coefficients);
-    }
+}
+
+void sheen_glossy_cache_orient(const SheenGlossyCache *g, const SeenSurface *v, GlossyLobe *lobe)
+{
+    float *c = &lobe->coefficients[0].r;
+    if (lobe->basis == SHEEN_BASIS_SH)
+        sheen_rotation_to_world(g->to_world, &v->frame, 3, c, c);
+    else if (v->wo_l.z < 0.0f)
+        turn_behind(&v->frame, lobe->order, lobe->coefficients);
 }

@@ -24,11 +24,15 @@ unsigned sheen_glossy_cache_order(const SheenGlossyCache *glossy);
 typedef struct GlossyLobe {
     SheenBasis basis;
     unsigned order;                    // 0: nothing
-    Rgb coefficients[SHEEN_BASIS_MAX]; // [order * order]: spherical ones in the world's frame, others in
-                                       // frame_from_normal of the shading normal on the viewer's side
+    Rgb coefficients[SHEEN_BASIS_MAX]; // [order * order]
 } GlossyLobe;
 
-/** Reads the lobes of a surface, and leaves in v->rest what they do not hold. */
+/** Reads the lobes of a surface, in the frames of sheen_lobe_table_read, and leaves in v->rest what they do not hold.
+ */
 void sheen_glossy_cache_read(const SheenGlossyCache *glossy, SeenSurface *v, GlossyLobe *out);
+
+/** Turns what was read to the frames of RadianceLobe: spherical harmonics to the world's, hemispherical ones to
+ *  frame_from_normal of the shading normal on the viewer's side. */
+void sheen_glossy_cache_orient(const SheenGlossyCache *glossy, const SeenSurface *v, GlossyLobe *lobe);
 
 #endif

@@ -219,6 +219,7 @@ static bool add_glossy_point(const SheenWork *work, const EyeRay *r, SeenSurface
     sheen_glossy_cache_read(work->glossy, s, &v->lobe);
     DiffusePoint point;
     if (v->lobe.order == 0 || !sheen_set_point(&s->s, s->wo_l.z > 0.0f, rgb_gray(1.0f), &point)) return true;
+    if (lobes) sheen_glossy_cache_orient(work->glossy, s, &v->lobe);
     ShadingPoint p = shading_point(r, &point, true);
     return sheen_seen_add_glossy(&p, v->lobe.basis, v->lobe.order, lobes ? v->lobe.coefficients : NULL, &v->seen);
 }
