@@ -7,20 +7,14 @@
 // sphere would lie in all of them at every level.
 static const float smallest_share = 0x1p-20f;
 
-SheenStatus sheen_octree_create(const Bounds *bounds, SheenOctree **out)
+static SheenStatus create_root(Vec3 lo, float side, float smallest, SheenOctree **out)
 {
     *out = NULL;
     SheenOctree *t = calloc(1, sizeof *t);
     if (!t) return SHEEN_ERR_NOMEM;
-    Vec3 size = v3_sub(bounds->hi, bounds->lo);
-    float side = maxf(size.x, maxf(size.y, size.z));
-    if (!(side > 0.0f) || !isfinite(side)) side = 1.0f;
-    side *= 1.01f;
-    Vec3 c = bounds_center(bounds);
-    if (!v3_finite(c)) c = v3(0, 0, 0);
+    t->lo = lo;
     t->side = side;
-    t->smallest = smallest_share * maxf(side, maxf(fabsf(c.x), maxf(fabsf(c.y), fabsf(c.z))));
-    t->lo = v3(c.x - 0.5f * side, c.y - 0.5f * side, c.z - 0.5f * side);
+    t->smallest = smallest;
     t->node_capacity = t->block_capacity = 64;
     t->nodes = calloc(t->node_capacity, sizeof *t->nodes);
     t->blocks = calloc(t->block_capacity, sizeof *t->blocks);
@@ -31,6 +25,23 @@ SheenStatus sheen_octree_create(const Bounds *bounds, SheenOctree **out)
     }
     *out = t;
     return SHEEN_OK;
+}
+
+SheenStatus sheen_octree_create(const Bounds *bounds, SheenOctree **out)
+{
+    Vec3 size = v3_sub(bounds->hi, bounds->lo);
+    float side = maxf(size.x, maxf(size.y, size.z));
+    if (!(side > 0.0f) || !isfinite(side)) side = 1.0f;
+    side *= 1.01f;
+    Vec3 c = bounds_center(bounds);
+    if (!v3_finite(c)) c = v3(0, 0, 0);
+    float smallest = smallest_share * maxf(side, maxf(fabsf(c.x), maxf(fabsf(c.y), fabsf(c.z))));
+    return create_root(v3(c.x - 0.5f * side, c.y - 0.5f * side, c.z - 0.5f * side), side, smallest, out);
+}
+
+SheenStatus sheen_octree_create_alike(const SheenOctree *tree, SheenOctree **out)
+{
+    return create_root(tree->lo, tree->side, tree->smallest, out);
 }
 
 void sheen_octree_destroy(SheenOctree **tree)

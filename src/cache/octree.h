@@ -39,6 +39,9 @@ struct SheenOctree {
 SHEEN_NODISCARD SheenStatus sheen_octree_create(const Bounds *bounds, SheenOctree **out);
 void sheen_octree_destroy(SheenOctree **tree);
 
+/** An empty tree over the same space. */
+SHEEN_NODISCARD SheenStatus sheen_octree_create_alike(const SheenOctree *tree, SheenOctree **out);
+
 /**
  * Adds a sphere to the nodes whose side is two to four times its radius and that it overlaps; the smallest spheres to
  * the smallest nodes. One that holds no point, without radius or not finite, is left out.

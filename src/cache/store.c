@@ -83,7 +83,12 @@ static void clamp_neighbors(SheenRecordStore *store, Record *r)
     clamp_visit(&c, 0, store->octree->lo, store->octree->side);
 }
 
-SheenStatus sheen_store_insert(SheenRecordStore *s, const Record *record)
+static SheenStatus index_record(const SheenRecordStore *s, SheenOctree *tree, const Record *r, uint32_t number)
+{
+    return sheen_octree_insert(tree, r->p, s->accuracy * r->R, number);
+}
+
+SheenStatus sheen_store_append(SheenRecordStore *s, const Record *record)
 {
     if (s->n == s->capacity) {
         uint32_t capacity = s->capacity ? 2 * s->capacity : 1024;
@@ -93,11 +98,30 @@ SheenStatus sheen_store_insert(SheenRecordStore *s, const Record *record)
         s->records = grown;
         s->capacity = capacity;
     }
+    SheenStatus status = index_record(s, s->octree, record, s->n);
+    if (status != SHEEN_OK) return status;
+    s->records[s->n++] = *record;
+    return SHEEN_OK;
+}
+
+SheenStatus sheen_store_insert(SheenRecordStore *s, const Record *record)
+{
     Record r = *record;
     if (s->neighbor_clamping) clamp_neighbors(s, &r);
-    SheenStatus status = sheen_octree_insert(s->octree, r.p, s->accuracy * r.R, s->n);
-    if (status != SHEEN_OK) return status;
-    s->records[s->n++] = r;
+    return sheen_store_append(s, &r);
+}
+
+SheenStatus sheen_store_reindex(SheenRecordStore *s)
+{
+    SheenOctree *tree = NULL;
+    SheenStatus status = sheen_octree_create_alike(s->octree, &tree);
+    for (uint32_t i = 0; i < s->n && status == SHEEN_OK; ++i) status = index_record(s, tree, &s->records[i], i);
+    if (status != SHEEN_OK) {
+        sheen_octree_destroy(&tree);
+        return status;
+    }
+    sheen_octree_destroy(&s->octree);
+    s->octree = tree;
     return SHEEN_OK;
 }
 

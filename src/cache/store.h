@@ -33,6 +33,16 @@ void sheen_store_destroy(SheenRecordStore **store);
  */
 SHEEN_NODISCARD SheenStatus sheen_store_insert(SheenRecordStore *store, const Record *record);
 
+/** Stores a copy of a record whose radius is final, one that was clamped when it was made: nothing is clamped. */
+SHEEN_NODISCARD SheenStatus sheen_store_append(SheenRecordStore *store, const Record *record);
+
+/**
+ * Builds the octree anew from the records in their order with the radii that they have now. It then is as if they had
+ * just been appended, so that look-ups meet them in the same order; and smaller, where insertions clamped radii.
+ * Errors: SHEEN_ERR_NOMEM; the store is unchanged then.
+ */
+SHEEN_NODISCARD SheenStatus sheen_store_reindex(SheenRecordStore *store);
+
 /** The records that serve a point. */
 enum { SHEEN_CONTRIBUTORS_MAX = 32 };
 typedef struct Contributors {
