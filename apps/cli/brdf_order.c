@@ -103,7 +103,7 @@ static json_t *draw_row(const Plot *plot, const SheenMaterial *m, const Bsdf *bs
             if (s.order > 0 && (least == 0 || s.order < least)) least = s.order;
             if (s.order > most) most = s.order;
             share += (double)s.share, error += (double)(s.share * s.error), ++n;
-            if (!plot->pixels || row >= ROWS_MAX) continue;
+            if (row >= ROWS_MAX) continue;
             *pixel(plot, row, 0, x, y) = faded(ramp(s.error / plot->error), s.share);
             *pixel(plot, row, 1, x, y) = faded(ramp((float)s.order / (float)plot->order), s.share);
             if (y == SIDE / 2) draw_column(plot, row, x, s);
@@ -125,48 +125,45 @@ static unsigned count_glossy(const SheenScene *scene, bool glossy[])
     return n;
 }
 
-static SheenStatus draw(Plot *plot, const SheenScene *scene, const BrdfOrderOptions *options, const SheenLog *log,
-                        json_t *rows)
+static SheenStatus draw(Plot *plot, const SheenScene *scene, const char *picture, const SheenLog *log, json_t *rows)
 {
     bool *glossy = calloc((size_t)scene->n_materials + 1, sizeof *glossy);
     if (!glossy) return SHEEN_ERR_NOMEM;
     unsigned n = count_glossy(scene, glossy), row = 0;
     SheenStatus status = SHEEN_OK;
-    if (options->picture) {
-        plot->height = GAP + (n > ROWS_MAX ? ROWS_MAX : n > 0 ? n : 1) * (SIDE + GAP);
-        plot->pixels = malloc((size_t)plot->height * WIDTH * sizeof *plot->pixels);
-        if (!plot->pixels) status = SHEEN_ERR_NOMEM;
-        for (size_t i = 0; !status && i < (size_t)plot->height * WIDTH; ++i) plot->pixels[i] = rgb_gray(0.9f);
-    }
+    plot->height = GAP + (n > ROWS_MAX ? ROWS_MAX : n > 0 ? n : 1) * (SIDE + GAP);
+    plot->pixels = malloc((size_t)plot->height * WIDTH * sizeof *plot->pixels);
+    if (!plot->pixels) status = SHEEN_ERR_NOMEM;
+    for (size_t i = 0; !status && i < (size_t)plot->height * WIDTH; ++i) plot->pixels[i] = rgb_gray(0.9f);
     for (uint32_t i = 0; !status && i < scene->n_materials; ++i) {
         if (!glossy[i]) continue;
         Bsdf bsdf = bsdf_of(scene, i);
         json_array_append_new(rows, draw_row(plot, &scene->materials[i], &bsdf, row++));
     }
-    if (!status && options->picture)
-        status = sheen_image_write(options->picture,
-                                   &(SheenImageView){.width = WIDTH, .height = plot->height, .pixels = plot->pixels}, 0,
-                                   log);
+    if (!status)
+        status = sheen_image_write(
+            picture, &(SheenImageView){.width = WIDTH, .height = plot->height, .pixels = plot->pixels}, 0, log);
     free(plot->pixels);
     free(glossy);
     return status;
 }
 
-int brdf_order_report(const SheenScene *scene, const BrdfOrderOptions *options, Report *report, json_t *info)
+int brdf_order_report(const SheenScene *scene, const char *picture, const LobeValues *lobes, Report *report,
+                      json_t *info)
 {
     const SheenLog log = report_log(report);
-    const SheenLobeTableDesc desc = {.order = options->order, .error = (float)options->error};
+    const SheenLobeTableDesc desc = {.order = lobes->order, .error = (float)lobes->brdf_error};
     SheenPool *pool = NULL;
     SheenLobeTables *tables = NULL;
     json_t *rows = json_array();
     SheenStatus status = rows ? sheen_pool_create(0, &pool) : SHEEN_ERR_NOMEM;
     if (!status) status = sheen_lobe_tables_create(&log, scene, &desc, pool, NULL, &tables);
     if (!status) {
-        Plot plot = {.tables = tables, .order = options->order, .error = (float)options->error};
-        status = draw(&plot, scene, options, &log, rows);
+        Plot plot = {.tables = tables, .order = lobes->order, .error = (float)lobes->brdf_error};
+        status = draw(&plot, scene, picture, &log, rows);
     }
     sheen_lobe_tables_destroy(&tables);
     sheen_pool_destroy(&pool);
     json_object_set_new(info, "harmonics", rows);
-    return report_exit_code(report, status, options->picture ? options->picture : scene->name);
+    return report_exit_code(report, status, picture);
 }

@@ -3,17 +3,12 @@
 #ifndef SHEEN_CLI_BRDF_ORDER_H
 #define SHEEN_CLI_BRDF_ORDER_H
 
+#include "lobe_options.h"
 #include "report.h"
 
 #include "scene/scene.h"
 
 #include <jansson.h>
-
-typedef struct BrdfOrderOptions {
-    const char *picture; // file to write, or NULL
-    uint32_t order;
-    double error;
-} BrdfOrderOptions;
 
 /**
  * Adds "harmonics" to *info: for each material with a glossy lobe its name, the least and largest order, the mean
@@ -21,6 +16,7 @@ typedef struct BrdfOrderOptions {
  * most 64, with the disk of outgoing directions coloured by error and by order, and both along its middle.
  * @return the exit code, after one line for an error
  */
-int brdf_order_report(const SheenScene *scene, const BrdfOrderOptions *options, Report *report, json_t *info);
+int brdf_order_report(const SheenScene *scene, const char *picture, const LobeValues *lobes, Report *report,
+                      json_t *info);
 
 #endif

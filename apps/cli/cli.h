@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the commands of the program share: each is one file that defines one Command. The table of its options is the
-// only place that knows them: parser, --help and man page are all made from it.
+// What the commands of the program share: each is one file that defines one Command. The tables of its options are the
+// only place that knows them: parser, --help and man page are all made from them.
 #ifndef SHEEN_CLI_CLI_H
 #define SHEEN_CLI_CLI_H
 
@@ -51,11 +51,17 @@ typedef struct Option {
     const char *meaning;  // sentences
     const char *standard; // what holds without the option; NULL for flags
     const char *example;  // as a user would type it
-    size_t offset;        // of the field in the command's structure of values
+    size_t offset;        // of the field in the table's structure of values
     double min, max;
     const Choice *choices;
     bool recorded; // the picture depends on it: it goes into statistics and EXR files
 } Option;
+
+/** Options that several commands may share, and where the structure that they fill stands in the command's values. */
+typedef struct OptionTable {
+    const Option *options; // NULL ends a list of tables
+    size_t base;
+} OptionTable;
 
 /** A command: `sheen NAME`. */
 typedef struct Command {
@@ -63,7 +69,7 @@ typedef struct Command {
     const char *operands;    // how help names them: "SCENE"
     const char *summary;     // one line, lower case, no stop
     const char *description; // paragraphs for help and man page, "\n" between them
-    const Option *options;
+    const OptionTable *options;
     const char *example; // a whole command line
     /** @param argv  argv[0] is the command's name; argv[argc] is NULL. @return the exit code */
     int (*run)(int argc, char **argv);
@@ -78,6 +84,12 @@ extern const Command *const cli_commands[];
 const Command *cli_find_command(const char *name);
 
 /**
+ * @param offset  gets the place of the option's field in the command's structure of values
+ * @return option i of all tables in their order, or NULL behind the last
+ */
+const Option *cli_option(const OptionTable *tables, size_t i, size_t *offset);
+
+/**
  * Reads the words of a command line into a structure of values that holds the defaults. Options and operands may stand
  * in any order; `--name=value`, `-xvalue` and `--` work; of an option given twice the last counts.
  * @param argc, argv  as a command gets them; on return argv[1..*argc - 1] are the operands
@@ -85,6 +97,9 @@ const Command *cli_find_command(const char *name);
  *         names the option that is wrong
  */
 bool cli_parse(const Command *command, int *argc, char **argv, void *values, int *exit_code);
+
+/** @return the nearest number of four decimals, so that a value of the library is told as 0.15 and not as its float. */
+double cli_decimal(float value);
 
 // Messages: one line each on stderr, with '?' for control characters.
 

@@ -302,7 +302,7 @@ const Command command_compare = {
         "each, "
         "without flicker.\n"
         "Pictures may be EXR, HDR, PFM, PNG, JPEG, TGA or BMP; each has the size of its reference.",
-    .options = compare_options,
+    .options = (const OptionTable[]){{compare_options, 0}, {0}},
     .example = "sheen compare reference.exr box.exr",
     .run = run_compare,
 };

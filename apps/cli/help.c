@@ -71,7 +71,9 @@ void cli_print_help(FILE *out, const Command *command)
     fprintf(out, "Usage: sheen %s %s [OPTION ...]\n\n", command->name, command->operands);
     print_wrapped(out, command->description, 0, 0);
     fputs("\nOptions:\n", out);
-    for (const Option *o = command->options; o->name; ++o)
+    const Option *o;
+    size_t offset;
+    for (size_t i = 0; (o = cli_option(command->options, i, &offset)); ++i)
         if (o->kind != OPTION_LATER) print_option(out, o);
     print_option(out, &help_option);
     fprintf(out, "\nExample:\n  %s\n\nExit codes:\n", command->example);
@@ -159,7 +161,9 @@ void cli_print_man(FILE *out, const Command *command)
     fputs(".SH DESCRIPTION\n", out);
     man_text(out, command->description);
     fputs(".SH OPTIONS\n", out);
-    for (const Option *o = command->options; o->name; ++o)
+    const Option *o;
+    size_t offset;
+    for (size_t i = 0; (o = cli_option(command->options, i, &offset)); ++i)
         if (o->kind != OPTION_LATER) man_option(out, o);
     man_option(out, &help_option);
     fputs(".SH EXAMPLE\n.nf\n", out);
@@ -201,7 +205,7 @@ const Command command_help = {
     .operands = "[COMMAND]",
     .summary = "what the program and its commands do",
     .description = "Prints an overview, or the help of one command: the same as 'sheen COMMAND --help'.",
-    .options = help_options,
+    .options = (const OptionTable[]){{help_options, 0}, {0}},
     .example = "sheen help render",
     .run = run_help,
 };

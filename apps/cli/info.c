@@ -4,10 +4,9 @@
 #include "cli.h"
 #include "exr_header.h"
 #include "json_text.h"
-#include "render_options.h"
 #include "report.h"
+#include "scene_options.h"
 
-#include "basis/basis.h"
 #include "image/image.h"
 #include "io/load.h"
 
@@ -16,20 +15,13 @@
 #include <strings.h>
 
 typedef struct InfoValues {
-    TextList defines;
-    BrdfOrderOptions brdf;
-    bool json, strict;
+    SceneValues scene;
+    LobeValues lobes;       // for brdf_order
+    const char *brdf_order; // picture to write, or NULL
+    bool json;
 } InfoValues;
 
 static const Option info_options[] = {
-    {.kind = OPTION_TEXTS,
-     .letter = 'D',
-     .name = "define",
-     .argument = "NAME=VALUE",
-     .meaning = "The value of $NAME in a Mitsuba scene, before what its <default> says. May be given several times.",
-     .standard = "what the scene says",
-     .example = "sheen info -D spp=64 scene.xml",
-     .offset = offsetof(InfoValues, defines)},
     {.kind = OPTION_TEXT,
      .name = "brdf-order",
      .argument = "FILE",
@@ -41,35 +33,19 @@ static const Option info_options[] = {
          "the material is sampled; and along the disk's middle the order as bars, the error as points.",
      .standard = "none",
      .example = "sheen info --brdf-order orders.png scene.xml",
-     .offset = offsetof(InfoValues, brdf.picture)},
-    {.kind = OPTION_COUNT,
-     .name = "order",
-     .argument = "N",
-     .meaning = "The largest order for --brdf-order.",
-     .standard = "10",
-     .example = "sheen info --brdf-order orders.png --order 16 scene.xml",
-     .min = 1,
-     .max = SHEEN_ORDER_MAX,
-     .offset = offsetof(InfoValues, brdf.order)},
-    {.kind = OPTION_NUMBER,
-     .name = "brdf-error",
-     .argument = "E",
-     .meaning = "The largest error for --brdf-order: energy that is missing.",
-     .standard = "0.05",
-     .example = "sheen info --brdf-order orders.png --brdf-error 0.01 scene.xml",
-     .min = 0.001,
-     .max = 0.5,
-     .offset = offsetof(InfoValues, brdf.error)},
+     .offset = offsetof(InfoValues, brdf_order)},
     {.kind = OPTION_FLAG,
      .name = "json",
      .meaning = "One JSON object for machines instead of text.",
      .example = "sheen info --json box.exr",
      .offset = offsetof(InfoValues, json)},
-    {.kind = OPTION_FLAG,
-     .name = "strict",
-     .meaning = "Take warnings, such as about parts of a scene that are not supported, for errors.",
-     .example = "sheen info --strict scene.xml",
-     .offset = offsetof(InfoValues, strict)},
+    {0},
+};
+
+static const OptionTable tables[] = {
+    {scene_options, offsetof(InfoValues, scene)},
+    {info_options, 0},
+    {lobe_options, offsetof(InfoValues, lobes)},
     {0},
 };
 
@@ -261,17 +237,17 @@ static bool is_image(const char *path)
 
 static int run_info(int argc, char **argv)
 {
-    InfoValues values = {.brdf = {.order = 10, .error = 0.05}};
+    InfoValues values = {.lobes = lobe_values_default()};
     int code;
     if (!cli_parse(&command_info, &argc, argv, &values, &code)) return code;
     if (argc < 2) return cli_usage_error(&command_info, "FILE: the file is missing");
     if (argc > 2) return cli_usage_error(&command_info, "FILE: '%s' is one file too many", argv[2]);
-    if (!defines_check(&command_info, &values.defines)) return CLI_USAGE;
-    if (values.brdf.picture && !sheen_image_writable_format(values.brdf.picture))
+    if (!scene_values_check(&command_info, &values.scene)) return CLI_USAGE;
+    if (values.brdf_order && !sheen_image_writable_format(values.brdf_order))
         return cli_usage_error(&command_info, "--brdf-order: '%s' has no ending of a picture that can be written",
-                               values.brdf.picture);
+                               values.brdf_order);
     const char *path = argv[1];
-    Report report = {.strict = values.strict};
+    Report report = {.strict = values.scene.strict};
     SheenLog log = report_log(&report);
     json_t *info = NULL;
     if (is_image(path)) {
@@ -282,10 +258,13 @@ static int run_info(int argc, char **argv)
     } else {
         SheenScene *scene;
         code = report_exit_code(
-            &report, sheen_scene_load_with(path, (SheenDefines){values.defines.items, values.defines.n}, &log, &scene),
+            &report,
+            sheen_scene_load_with(path, (SheenDefines){values.scene.defines.items, values.scene.defines.n}, &log,
+                                  &scene),
             path);
         if (code == CLI_DONE) info = scene_json(path, scene);
-        if (code == CLI_DONE && values.brdf.picture) code = brdf_order_report(scene, &values.brdf, &report, info);
+        if (code == CLI_DONE && values.brdf_order)
+            code = brdf_order_report(scene, values.brdf_order, &values.lobes, &report, info);
         sheen_scene_destroy(&scene);
     }
     if (code == CLI_DONE) return print_info(info, values.json);
@@ -300,7 +279,7 @@ const Command command_info = {
     .description =
         "Prints what a scene file holds (shapes, triangles, materials and lights by kind, cameras, bounds) or "
         "an image file (size, channels, mean, least and largest values, text attributes).",
-    .options = info_options,
+    .options = tables,
     .example = "sheen info scenes/cornell-box.xml",
     .run = run_info,
 };

@@ -148,21 +148,34 @@ static bool store(const Given *g)
     return false;
 }
 
-/** Finds the option of a word that begins with a dash; *inline_text is what follows `=` or the letter, or NULL. */
-static const Option *find_option(const Command *command, const char *word, Given *g, const char **inline_text)
+const Option *cli_option(const OptionTable *tables, size_t i, size_t *offset)
 {
+    for (const OptionTable *t = tables; t->options; ++t)
+        for (const Option *o = t->options; o->name; ++o) {
+            if (i-- > 0) continue;
+            *offset = t->base + o->offset;
+            return o;
+        }
+    return NULL;
+}
+
+/** Finds the option of a word that begins with a dash; *inline_text is what follows `=` or the letter, or NULL. */
+static const Option *find_option(const Command *command, const char *word, Given *g, const char **inline_text,
+                                 size_t *offset)
+{
+    const Option *o;
     *inline_text = NULL;
     if (word[1] != '-') {
         snprintf(g->shown, sizeof g->shown, "-%c", word[1]);
         if (word[2]) *inline_text = word + 2;
-        for (const Option *o = command->options; o->name; ++o)
+        for (size_t i = 0; (o = cli_option(command->options, i, offset)); ++i)
             if (o->letter == word[1]) return o;
         return NULL;
     }
     size_t length = strcspn(word, "=");
     if (word[length]) *inline_text = word + length + 1;
     snprintf(g->shown, sizeof g->shown, "%.*s", (int)length, word);
-    for (const Option *o = command->options; o->name; ++o)
+    for (size_t i = 0; (o = cli_option(command->options, i, offset)); ++i)
         if (strlen(o->name) == length - 2 && memcmp(o->name, word + 2, length - 2) == 0) return o;
     return NULL;
 }
@@ -172,7 +185,8 @@ static bool parse_option(const Command *command, int argc, char **argv, int *i, 
 {
     Given g = {.command = command};
     const char *inline_text;
-    g.option = find_option(command, argv[*i], &g, &inline_text);
+    size_t offset = 0;
+    g.option = find_option(command, argv[*i], &g, &inline_text, &offset);
     if (!g.option) {
         cli_usage_error(command, "%s: there is no such option", g.shown);
         return false;
@@ -185,7 +199,7 @@ static bool parse_option(const Command *command, int argc, char **argv, int *i, 
         cli_usage_error(command, "%s: takes no argument, not '%s'", g.shown, inline_text);
         return false;
     }
-    g.field = (char *)values + g.option->offset;
+    g.field = (char *)values + offset;
     g.text = inline_text;
     if (g.option->kind != OPTION_FLAG) {
         if (!g.text && *i + 1 < argc) g.text = argv[++*i];
@@ -195,6 +209,11 @@ static bool parse_option(const Command *command, int argc, char **argv, int *i, 
         }
     }
     return store(&g);
+}
+
+double cli_decimal(float value)
+{
+    return nearbyint((double)value * 1e4) / 1e4;
 }
 
 bool cli_parse(const Command *command, int *argc, char **argv, void *values, int *exit_code)

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render_options.h"
 
-#include "json_text.h"
+#include "options_json.h"
 
-#include "basis/rotation.h"
 #include "image/image.h"
-#include "io/defines.h"
-
-#include <string.h>
 
 static const Choice integrators[] = {
     {"irradiance", SHEEN_INTEGRATOR_IRRADIANCE},
@@ -67,16 +63,6 @@ static const Choice aovs[] = {
 #define RANGE(lo, hi) .min = (lo), .max = (hi)
 
 const Option render_options[] = {
-    {.kind = OPTION_TEXTS,
-     .letter = 'o',
-     .name = "output",
-     .argument = "FILE",
-     .meaning = "The picture to write; its ending tells the format: .exr (float, linear, with the layers of --aov), "
-                ".hdr, .pfm, .png (8 bit, sRGB). May be given several times. A file appears whole or not at all, and "
-                "an existing one is replaced by a finished one only.",
-     .standard = "none; at least one is required",
-     .example = "-o box.exr -o box.png",
-     FIELD(outputs)},
     {.kind = OPTION_CHOICE,
      .name = "integrator",
      .argument = "NAME",
@@ -106,15 +92,6 @@ const Option render_options[] = {
      .example = "--camera 1",
      .recorded = true,
      FIELD(camera)},
-    {.kind = OPTION_TEXTS,
-     .letter = 'D',
-     .name = "define",
-     .argument = "NAME=VALUE",
-     .meaning = "The value of $NAME in a Mitsuba scene, before what its <default> says. May be given several times.",
-     .standard = "what the scene says",
-     .example = "-D spp=64",
-     .recorded = true,
-     FIELD(defines)},
     {.kind = OPTION_COUNT,
      .name = "spp",
      .argument = "N",
@@ -165,16 +142,6 @@ const Option render_options[] = {
      RANGE(0, 1024),
      FIELD(bounces)},
     {.kind = OPTION_NUMBER,
-     .name = "time-limit",
-     .argument = "SECONDS",
-     .meaning = "With --integrator path only: pass after pass until the time is up, whatever --spp says. The "
-                "statistics tell how many there were.",
-     .standard = "none",
-     .example = "--integrator path --time-limit 30",
-     .recorded = true,
-     RANGE(0.001, 1e9),
-     FIELD(time_limit)},
-    {.kind = OPTION_NUMBER,
      .name = "accuracy",
      .argument = "A",
      .meaning = "The largest interpolation error of the cache: a record is used where its weight is over 1/A. Smaller "
@@ -205,25 +172,6 @@ const Option render_options[] = {
      .choices = gradients,
      .recorded = true,
      FIELD(gradients)},
-    {.kind = OPTION_COUNT,
-     .name = "order",
-     .argument = "N",
-     .meaning = "Of radiance records and glossy lobes: the largest order of the harmonics, of N * N coefficients.",
-     .standard = "10",
-     .example = "--order 6",
-     .recorded = true,
-     RANGE(1, SHEEN_TILT_ORDER_MAX),
-     FIELD(order)},
-    {.kind = OPTION_NUMBER,
-     .name = "brdf-error",
-     .argument = "E",
-     .meaning = "The largest share of a glossy lobe's energy that harmonics may miss. Where they miss more, light is "
-                "sampled; where they miss more than half of that, both share the lobe.",
-     .standard = "0.05",
-     .example = "--brdf-error 0.02",
-     .recorded = true,
-     RANGE(0.001, 0.5),
-     FIELD(brdf_error)},
     {.kind = OPTION_CHOICE,
      .name = "basis",
      .argument = "auto|hsh|sh",
@@ -276,7 +224,7 @@ const Option render_options[] = {
     {.kind = OPTION_NUMBER,
      .name = "exposure",
      .argument = "EV",
-     .meaning = "Stops by which .png files are brightened; the other formats are never scaled.",
+     .meaning = "Stops by which .png files are brightened; formats that hold light itself are never scaled.",
      .standard = "0",
      .example = "--exposure -1.5",
      RANGE(-64.0, 64.0),
@@ -324,21 +272,11 @@ const Option render_options[] = {
      .meaning = "Say more on standard error: what was loaded, and what took how long.",
      .example = "--verbose",
      FIELD(verbose)},
-    {.kind = OPTION_FLAG,
-     .name = "strict",
-     .meaning = "Take warnings, such as about parts of a scene that are not supported, for errors.",
-     .example = "--strict",
-     FIELD(strict)},
-    {.kind = OPTION_LATER, .name = "order"},
-    {.kind = OPTION_LATER, .name = "brdf-error"},
-    {.kind = OPTION_LATER, .name = "basis"},
     {.kind = OPTION_LATER, .name = "error-metric"},
     {.kind = OPTION_LATER, .name = "adaptive"},
     {.kind = OPTION_LATER, .name = "discernible"},
     {.kind = OPTION_LATER, .name = "cache-in"},
     {.kind = OPTION_LATER, .name = "cache-out"},
-    {.kind = OPTION_LATER, .name = "records-only"},
-    {.kind = OPTION_LATER, .name = "frame"},
     {0},
 };
 
@@ -349,13 +287,11 @@ RenderValues render_values_default(void)
         .integrator = SHEEN_INTEGRATOR_RADIANCE,
         .light_samples = o.light_samples,
         .bounces = o.bounces,
-        // The nearest decimal, so that statistics say 0.15 and not what a float makes of it.
-        .noise = (double)(int)(o.noise * 1e4f + 0.5f) / 1e4,
-        .accuracy = (double)(int)(o.accuracy * 1e4f + 0.5f) / 1e4,
+        .noise = cli_decimal(o.noise),
+        .accuracy = cli_decimal(o.accuracy),
         .gather_rays = o.gather_rays,
         .gradients = (int)o.gradients,
-        .order = o.order,
-        .brdf_error = (double)(int)(o.brdf_error * 1e4f + 0.5f) / 1e4,
+        .lobes = lobe_values_default(),
         .basis = (int)o.basis,
         .secondary = (int)o.secondary,
         .neighbor_clamping = o.neighbor_clamping,
@@ -365,50 +301,12 @@ RenderValues render_values_default(void)
     };
 }
 
-static bool outputs_check(const TextList *outputs)
+bool render_values_check(const Command *command, const RenderValues *values)
 {
-    if (outputs->n == 0) {
-        cli_usage_error(&command_render, "--output: at least one picture file is required");
-        return false;
-    }
-    for (size_t i = 0; i < outputs->n; ++i) {
-        if (!sheen_image_writable_format(outputs->items[i])) {
-            cli_usage_error(&command_render, "--output: '%s' does not end in .exr, .hdr, .pfm or .png",
-                            outputs->items[i]);
-            return false;
-        }
-        for (size_t k = 0; k < i; ++k) {
-            if (strcmp(outputs->items[i], outputs->items[k]) != 0) continue;
-            cli_usage_error(&command_render, "--output: '%s' is given twice", outputs->items[i]);
-            return false;
-        }
-    }
-    return true;
-}
-
-bool defines_check(const Command *command, const TextList *defines)
-{
-    for (size_t i = 0; i < defines->n; ++i) {
-        if (sheen_define_is_valid(defines->items[i])) continue;
-        cli_usage_error(command, "--define: '%s' is not NAME=VALUE", defines->items[i]);
-        return false;
-    }
-    return true;
-}
-
-bool render_values_check(const RenderValues *values)
-{
-    if (!outputs_check(&values->outputs) || !defines_check(&command_render, &values->defines)) return false;
-    if (values->time_limit > 0.0 && values->integrator != SHEEN_INTEGRATOR_PATH) {
-        cli_usage_error(&command_render, "--time-limit: goes with --integrator path only");
-        return false;
-    }
-    if ((uint64_t)values->size.width * values->size.height > SHEEN_IMAGE_MAX_PIXELS) {
-        cli_usage_error(&command_render, "--size: a picture has at most %llu pixels",
-                        (unsigned long long)SHEEN_IMAGE_MAX_PIXELS);
-        return false;
-    }
-    return true;
+    if (!scene_values_check(command, &values->scene)) return false;
+    if ((uint64_t)values->size.width * values->size.height <= SHEEN_IMAGE_MAX_PIXELS) return true;
+    cli_usage_error(command, "--size: a picture has at most %llu pixels", (unsigned long long)SHEEN_IMAGE_MAX_PIXELS);
+    return false;
 }
 
 SheenRenderSettings render_values_settings(RenderValues *values, const SheenCamera *camera, uint32_t camera_index)
@@ -429,8 +327,8 @@ SheenRenderSettings render_values_settings(RenderValues *values, const SheenCame
     o.accuracy = (float)values->accuracy;
     o.gather_rays = values->gather_rays;
     o.gradients = (SheenGradient)values->gradients;
-    o.order = values->order;
-    o.brdf_error = (float)values->brdf_error;
+    o.order = values->lobes.order;
+    o.brdf_error = (float)values->lobes.brdf_error;
     o.basis = (SheenBasisChoice)values->basis;
     o.secondary = (SheenSecondary)values->secondary;
     o.neighbor_clamping = values->neighbor_clamping != 0;
@@ -445,51 +343,6 @@ SheenRenderSettings render_values_settings(RenderValues *values, const SheenCame
         .filter = filter,
         .options = o,
     };
-}
-
-static const char *choice_name(const Choice *choices, int value)
-{
-    for (const Choice *c = choices; c->name; ++c)
-        if (c->value == value) return c->name;
-    return "";
-}
-
-static json_t *value_json(const Option *o, const void *field)
-{
-    switch (o->kind) {
-    case OPTION_COUNT:
-        return json_integer(*(const uint32_t *)field);
-    case OPTION_NUMBER:
-        return json_real(*(const double *)field);
-    case OPTION_CHOICE:
-        return json_string(choice_name(o->choices, *(const int *)field));
-    case OPTION_SIZE: {
-        const PictureSize *size = field;
-        return json_pack("[I, I]", (json_int_t)size->width, (json_int_t)size->height);
-    }
-    case OPTION_TEXT:
-        return json_text(*(const char *const *)field);
-    case OPTION_TEXTS: {
-        const TextList *list = field;
-        json_t *texts = json_array();
-        for (size_t i = 0; i < list->n; ++i) json_array_append_new(texts, json_text(list->items[i]));
-        return texts;
-    }
-    default:
-        return json_null();
-    }
-}
-
-json_t *render_values_json(const RenderValues *values)
-{
-    json_t *object = json_object();
-    for (const Option *o = render_options; object && o->name; ++o) {
-        if (!o->recorded) continue;
-        if (json_object_set_new(object, o->name, value_json(o, (const char *)values + o->offset)) == 0) continue;
-        json_decref(object);
-        object = NULL;
-    }
-    return object;
 }
 
 const char *render_integrator_name(const RenderValues *values)

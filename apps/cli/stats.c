@@ -2,6 +2,7 @@
 #include "stats.h"
 
 #include "json_text.h"
+#include "options_json.h"
 
 #include <string.h>
 #include <sys/resource.h>
@@ -16,8 +17,8 @@ static json_int_t peak_rss_bytes(void)
 static json_t *time_json(const RunStats *run)
 {
     const SheenStats *s = &run->render;
-    return json_pack("{s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "load", run->load, "build", run->times.build,
-                     "visibility", s->time_visibility, "fill", s->time_fill, "direct", s->time_direct, "interpolate",
+    return json_pack("{s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "load", run->load, "build", run->build, "visibility",
+                     s->time_visibility, "fill", s->time_fill, "direct", s->time_direct, "interpolate",
                      s->time_interpolate, "write", run->write, "total", run->total);
 }
 
@@ -37,19 +38,35 @@ static json_t *records_json(const SheenStats *s)
                      0, "new", (json_int_t)(s->records + s->radiance_records + s->deep_records), "deleted", 0);
 }
 
-char *stats_to_json(const RenderValues *values, const RunStats *run)
+FrameStats frame_stats(long frame, double time, const SheenStats *stats)
 {
-    const SheenStats *s = &run->render;
-    json_t *frame = json_pack("{s:i, s:f, s:I}", "frame", 0, "time", run->times.total, "records",
-                              (json_int_t)(s->records + s->radiance_records));
+    uint64_t records = stats->records + stats->radiance_records;
+    return (FrameStats){frame, time, records, records};
+}
+
+static json_t *frames_json(const RunStats *run)
+{
+    json_t *frames = json_array();
+    for (size_t i = 0; i < run->n_frames; ++i) {
+        const FrameStats *f = &run->frames[i];
+        json_array_append_new(frames, json_pack("{s:I, s:f, s:I, s:I}", "frame", (json_int_t)f->frame, "time", f->time,
+                                                "records", (json_int_t)f->records, "new", (json_int_t)f->added));
+    }
+    return frames;
+}
+
+char *stats_to_json(const Run *run, const RunStats *stats)
+{
+    const SheenStats *s = &stats->render;
+    const RenderValues *v = run->values;
     json_t *object = json_pack(
-        "{s:s, s:o, s:s, s:[I, I], s:i, s:I, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I, s:f, s:I, s:[o]}", "version",
-        SHEEN_VERSION, "scene", json_text(run->scene), "integrator", render_integrator_name(values), "size",
-        (json_int_t)values->size.width, (json_int_t)values->size.height, "threads", (int)run->threads, "seed",
-        (json_int_t)values->seed, "options", render_values_json(values), "time", time_json(run), "rays", rays_json(s),
-        "records", records_json(s), "cache_bytes", (json_int_t)s->cache_bytes, "peak_rss_bytes", peak_rss_bytes(),
-        "passes", (json_int_t)s->passes, "spp_done", (json_int_t)s->spp_done, "spp_mean", s->spp_mean,
-        "nonfinite_samples", (json_int_t)s->nonfinite_samples, "frames", frame);
+        "{s:s, s:o, s:s, s:[I, I], s:i, s:I, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I, s:f, s:I, s:o}", "version",
+        SHEEN_VERSION, "scene", json_text(run->scene_path), "integrator", render_integrator_name(v), "size",
+        (json_int_t)v->size.width, (json_int_t)v->size.height, "threads", (int)sheen_pool_size(run->pool), "seed",
+        (json_int_t)v->seed, "options", options_json(run->command->options, run->all_values), "time", time_json(stats),
+        "rays", rays_json(s), "records", records_json(s), "cache_bytes", (json_int_t)s->cache_bytes, "peak_rss_bytes",
+        peak_rss_bytes(), "passes", (json_int_t)s->passes, "spp_done", (json_int_t)s->spp_done, "spp_mean", s->spp_mean,
+        "nonfinite_samples", (json_int_t)s->nonfinite_samples, "frames", frames_json(stats));
     char *text = object ? json_dumps(object, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
     json_decref(object);
     return text;

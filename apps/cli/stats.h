@@ -3,18 +3,28 @@
 #ifndef SHEEN_CLI_STATS_H
 #define SHEEN_CLI_STATS_H
 
-#include "render_options.h"
+#include "run.h"
 
-/** What a run of `sheen render` measured beside the library's own counters. Times in seconds. */
+/** Of one picture. */
+typedef struct FrameStats {
+    long frame;
+    double time;      // seconds
+    uint64_t records; // that it reads, of irradiance and of radiance
+    uint64_t added;   // of these, how many were made for it
+} FrameStats;
+
+/** What a run measured; counters and times are sums over its frames. Times in seconds. */
 typedef struct RunStats {
-    const char *scene;
-    unsigned threads;
-    double load, write, total;
+    double load, build, write, total;
     SheenStats render;
-    SheenRenderTimes times;
+    const FrameStats *frames; // [n_frames]
+    size_t n_frames;
 } RunStats;
 
+/** @return the figures of a picture whose records were all made for it. */
+FrameStats frame_stats(long frame, double time, const SheenStats *stats);
+
 /** @return the object as text from malloc, or NULL when out of memory. Keys never change their meaning. */
-char *stats_to_json(const RenderValues *values, const RunStats *run);
+char *stats_to_json(const Run *run, const RunStats *stats);
 
 #endif

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "options_json.h"
+
+#include "json_text.h"
+
+const char *choice_name(const Choice *choices, int value)
+{
+    for (const Choice *c = choices; c->name; ++c)
+        if (c->value == value) return c->name;
+    return "";
+}
+
+static json_t *texts_json(const TextList *list)
+{
+    json_t *texts = json_array();
+    for (size_t i = 0; i < list->n; ++i) json_array_append_new(texts, json_text(list->items[i]));
+    return texts;
+}
+
+static json_t *value_json(const Option *o, const void *field)
+{
+    switch (o->kind) {
+    case OPTION_FLAG:
+        return json_boolean(*(const bool *)field);
+    case OPTION_COUNT:
+        return json_integer(*(const uint32_t *)field);
+    case OPTION_NUMBER:
+        return json_real(*(const double *)field);
+    case OPTION_CHOICE:
+        return json_string(choice_name(o->choices, *(const int *)field));
+    case OPTION_SIZE: {
+        const PictureSize *size = field;
+        return json_pack("[I, I]", (json_int_t)size->width, (json_int_t)size->height);
+    }
+    case OPTION_TEXT: {
+        const char *text = *(const char *const *)field;
+        return text ? json_text(text) : json_null();
+    }
+    case OPTION_TEXTS:
+        return texts_json(field);
+    default:
+        return json_null();
+    }
+}
+
+json_t *options_json(const OptionTable *tables, const void *values)
+{
+    json_t *object = json_object();
+    const Option *o;
+    size_t offset;
+    for (size_t i = 0; object && (o = cli_option(tables, i, &offset)); ++i) {
+        if (!o->recorded) continue;
+        if (json_object_set_new(object, o->name, value_json(o, (const char *)values + offset)) == 0) continue;
+        json_decref(object);
+        object = NULL;
+    }
+    return object;
+}
