@@ -23,9 +23,9 @@ SheenStatus sheen_render(const SheenScene *scene, const SheenRenderSettings *set
     *film = NULL;
     *stats = (SheenStats){0};
     *times = (SheenRenderTimes){0};
-    if (settings->camera >= scene->n_cameras)
+    if (!settings->view && settings->camera >= scene->n_cameras)
         return sheen_fail(log, SHEEN_ERR_INVALID, "camera %u: the scene has %u", settings->camera, scene->n_cameras);
-    const SheenCamera *camera = &scene->cameras[settings->camera];
+    const SheenCamera *camera = settings->view ? settings->view : &scene->cameras[settings->camera];
     uint32_t width = settings->width ? settings->width : camera->width;
     uint32_t height = settings->height ? settings->height : camera->height;
     if (width == 0 || height == 0 || width > SHEEN_IMAGE_MAX_SIDE || height > SHEEN_IMAGE_MAX_SIDE ||

@@ -14,10 +14,11 @@ typedef enum SheenIntegrator {
 
 typedef struct SheenRenderSettings {
     SheenIntegrator integrator;
-    uint32_t camera;        // index into scene->cameras
-    uint32_t width, height; // 0: the camera's
-    unsigned aovs;          // bit 1 << SheenAov
-    SheenFilter filter;     // SHEEN_FILTER_UNSET: the camera's
+    uint32_t camera;         // index into scene->cameras
+    const SheenCamera *view; // stands in for that camera, borrowed; NULL: the scene's own
+    uint32_t width, height;  // 0: the camera's
+    unsigned aovs;           // bit 1 << SheenAov
+    SheenFilter filter;      // SHEEN_FILTER_UNSET: the camera's
     SheenOptions options;
 } SheenRenderSettings;
 
