@@ -10,6 +10,7 @@ static const float share_of_bound = 0.5f;
 
 typedef struct Smoothing {
     const SheenRecordStore *wide; // the records, with twice the reach
+    uint32_t first;               // of the records that learn
     // One of the two caches, and what becomes of its light.
     const SheenIrradianceCache *irradiance;
     const SheenRadianceCache *radiance;
@@ -83,8 +84,9 @@ static void smooth_irradiance(void *user, size_t item, unsigned worker)
     (void)worker;
     Smoothing *s = user;
     Teachers from;
-    if (!find_teachers(s, (uint32_t)item, &from)) return;
-    const Record *at = &s->wide->records[item];
+    uint32_t own = s->first + (uint32_t)item;
+    if (!find_teachers(s, own, &from)) return;
+    const Record *at = &s->wide->records[own];
     IrradianceLight sum = {.E = rgb_gray(0.0f)};
     for (unsigned k = 0; k < from.n; ++k) {
         uint32_t other = from.record[k];
@@ -99,7 +101,7 @@ static void smooth_irradiance(void *user, size_t item, unsigned worker)
         sum.translation[i] = in_plane(sum.translation[i], at->n);
         sum.rotation[i] = in_plane(sum.rotation[i], at->n);
     }
-    s->irradiance_out[item] = sum;
+    s->irradiance_out[own] = sum;
 }
 
 // Adds what a record says at another, its derivatives turned to the other's axes.
@@ -124,10 +126,11 @@ static void smooth_radiance(void *user, size_t item, unsigned worker)
     Smoothing *s = user;
     const SheenRadianceCache *c = s->radiance;
     Teachers from;
-    if (!find_teachers(s, (uint32_t)item, &from)) return;
-    float *out = s->radiance_out + item * radiance_light_floats(c);
+    uint32_t own = s->first + (uint32_t)item;
+    if (!find_teachers(s, own, &from)) return;
+    float *out = s->radiance_out + own * radiance_light_floats(c);
     memset(out, 0, radiance_light_floats(c) * sizeof *out);
-    for (unsigned k = 0; k < from.n; ++k) add_radiance(c, from.record[k], from.weight[k], &s->wide->records[item], out);
+    for (unsigned k = 0; k < from.n; ++k) add_radiance(c, from.record[k], from.weight[k], &s->wide->records[own], out);
 }
 
 static SheenStatus widen(const SheenRecordStore *store, const Bounds *bounds, SheenRecordStore **wide)
@@ -147,7 +150,7 @@ static SheenStatus run(const SheenRecordStore *store, const Bounds *bounds, Shee
     if (status == SHEEN_OK) {
         memcpy(out, light, bytes);
         s->wide = wide;
-        if (!sheen_pool_run(pool, store->n, task, s, cancel)) status = SHEEN_ERR_CANCELLED;
+        if (!sheen_pool_run(pool, store->n - s->first, task, s, cancel)) status = SHEEN_ERR_CANCELLED;
     }
     if (status == SHEEN_OK) memcpy(light, out, bytes);
     sheen_store_destroy(&wide);
@@ -155,20 +158,20 @@ static SheenStatus run(const SheenRecordStore *store, const Bounds *bounds, Shee
     return status;
 }
 
-SheenStatus sheen_irradiance_cache_smooth(SheenIrradianceCache *cache, const Bounds *bounds, SheenPool *pool,
-                                          const atomic_bool *cancel)
+SheenStatus sheen_irradiance_cache_smooth(SheenIrradianceCache *cache, uint32_t first, const Bounds *bounds,
+                                          SheenPool *pool, const atomic_bool *cancel)
 {
     size_t bytes = cache->store->n * sizeof *cache->light;
-    if (bytes == 0) return SHEEN_OK;
-    Smoothing s = {.irradiance = cache, .irradiance_out = malloc(bytes)};
+    if (first >= cache->store->n) return SHEEN_OK;
+    Smoothing s = {.first = first, .irradiance = cache, .irradiance_out = malloc(bytes)};
     return run(cache->store, bounds, pool, cancel, smooth_irradiance, &s, cache->light, s.irradiance_out, bytes);
 }
 
-SheenStatus sheen_radiance_cache_smooth(SheenRadianceCache *cache, const Bounds *bounds, SheenPool *pool,
-                                        const atomic_bool *cancel)
+SheenStatus sheen_radiance_cache_smooth(SheenRadianceCache *cache, uint32_t first, const Bounds *bounds,
+                                        SheenPool *pool, const atomic_bool *cancel)
 {
     size_t bytes = cache->store->n * radiance_light_floats(cache) * sizeof *cache->light;
-    if (bytes == 0) return SHEEN_OK;
-    Smoothing s = {.radiance = cache, .radiance_out = malloc(bytes)};
+    if (first >= cache->store->n) return SHEEN_OK;
+    Smoothing s = {.first = first, .radiance = cache, .radiance_out = malloc(bytes)};
     return run(cache->store, bounds, pool, cancel, smooth_radiance, &s, cache->light, s.radiance_out, bytes);
 }

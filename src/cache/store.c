@@ -33,20 +33,20 @@ void sheen_store_destroy(SheenRecordStore **store)
 
 // One sphere of influence that clamping visits: a record's own.
 typedef struct Clamp {
-    SheenRecordStore *store;
+    const SheenRecordStore *store;
     Vec3 p;
-    float R;        // first pass: search radius
-    float smallest; // out, first pass: least R_j + distance
-    float limit;    // in, second pass: neighbors shrink to limit + distance
-    bool shrink;    // second pass
+    float R;         // first pass: search radius
+    float smallest;  // out, first pass: least R_j + distance
+    float limit;     // in, second pass: neighbors shrink to limit + distance
+    Record *shrinks; // second pass: the store's records; NULL in the first
 } Clamp;
 
 static void clamp_record(Clamp *c, uint32_t record)
 {
-    Record *r = &c->store->records[record];
+    const Record *r = &c->store->records[record];
     float d = v3_length(v3_sub(r->p, c->p));
-    if (c->shrink)
-        r->R = maxf(r->R_min, minf(r->R, c->limit + d));
+    if (c->shrinks)
+        c->shrinks[record].R = maxf(r->R_min, minf(r->R, c->limit + d));
     else if (!record_is_sliver(r))
         c->smallest = minf(c->smallest, r->R + d);
 }
@@ -57,7 +57,7 @@ static void clamp_record(Clamp *c, uint32_t record)
 static void clamp_visit(Clamp *c, uint32_t node, Vec3 lo, float side)
 {
     const SheenOctree *t = c->store->octree;
-    float R = node == 0 ? INFINITY : c->shrink ? 0.51f * side / c->store->accuracy : c->R;
+    float R = node == 0 ? INFINITY : c->shrinks ? 0.51f * side / c->store->accuracy : c->R;
     if (c->p.x + R < lo.x || c->p.x - R > lo.x + side || c->p.y + R < lo.y || c->p.y - R > lo.y + side ||
         c->p.z + R < lo.z || c->p.z - R > lo.z + side)
         return;
@@ -72,14 +72,18 @@ static void clamp_visit(Clamp *c, uint32_t node, Vec3 lo, float side)
     }
 }
 
-static void clamp_neighbors(SheenRecordStore *store, Record *r)
+void sheen_store_bound(const SheenRecordStore *store, Record *r)
 {
-    if (record_is_sliver(r)) return;
+    if (!store->neighbor_clamping || record_is_sliver(r)) return;
     Clamp c = {.store = store, .p = r->p, .R = r->R, .smallest = r->R};
     clamp_visit(&c, 0, store->octree->lo, store->octree->side);
     r->R = maxf(r->R_min, c.smallest);
-    c.limit = r->R;
-    c.shrink = true;
+}
+
+static void shrink_neighbors(SheenRecordStore *store, const Record *r)
+{
+    if (!store->neighbor_clamping || record_is_sliver(r)) return;
+    Clamp c = {.store = store, .p = r->p, .limit = r->R, .shrinks = store->records};
     clamp_visit(&c, 0, store->octree->lo, store->octree->side);
 }
 
@@ -107,7 +111,8 @@ SheenStatus sheen_store_append(SheenRecordStore *s, const Record *record)
 SheenStatus sheen_store_insert(SheenRecordStore *s, const Record *record)
 {
     Record r = *record;
-    if (s->neighbor_clamping) clamp_neighbors(s, &r);
+    sheen_store_bound(s, &r);
+    shrink_neighbors(s, &r);
     return sheen_store_append(s, &r);
 }
 

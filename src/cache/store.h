@@ -43,6 +43,12 @@ SHEEN_NODISCARD SheenStatus sheen_store_append(SheenRecordStore *store, const Re
  */
 SHEEN_NODISCARD SheenStatus sheen_store_reindex(SheenRecordStore *store);
 
+/**
+ * With neighbor clamping: makes a record's radius at most R_j + distance of each record j of the store, not below its
+ * own R_min. Thread-safe. Source: krivanek2006-making-caching-practical sec. 5.2.
+ */
+void sheen_store_bound(const SheenRecordStore *store, Record *record);
+
 /** The records that serve a point. */
 enum { SHEEN_CONTRIBUTORS_MAX = 32 };
 typedef struct Contributors {

@@ -22,10 +22,45 @@ typedef struct Waves {
     float *spacing;         // [n_open] distance within which one record of the wave is enough
     uint32_t *accepted;     // the wave's new records
     size_t n_accepted;
-    Record *records;      // [n_accepted]
-    unsigned char *light; // [n_accepted][kind->light_size]
-    uint32_t made;        // records before the wave, for keys and progress
+    Record *records;       // [n_accepted]
+    unsigned char *light;  // [n_accepted][kind->light_size]
+    uint32_t before, made; // records around the store and in it, before the wave, for keys
 } Waves;
+
+/** Asks whether all points are covered. */
+typedef struct Question {
+    const SheenRecordStore *store;
+    const ShadingPoint *points; // [n]
+    size_t n;
+    atomic_bool open;
+} Question;
+
+static bool is_covered(const SheenRecordStore *store, const ShadingPoint *p)
+{
+    Contributors c;
+    sheen_store_find(store, p->point.p, p->point.n, 0.0f, &c);
+    return c.cover > 1;
+}
+
+static void question_task(void *user, size_t item, unsigned worker)
+{
+    (void)worker;
+    Question *q = user;
+    size_t end = (item + 1) * COVER_BLOCK < q->n ? (item + 1) * COVER_BLOCK : q->n;
+    for (size_t i = item * COVER_BLOCK; i < end && !atomic_load_explicit(&q->open, memory_order_relaxed); ++i)
+        if (!is_covered(q->store, &q->points[i])) atomic_store(&q->open, true);
+}
+
+SheenStatus sheen_fill_is_open(const SheenWork *work, const SheenRecordStore *store, const ShadingPoint points[],
+                               size_t n, bool *open)
+{
+    Question q = {store, points, n, false};
+    *open = false;
+    if (!sheen_pool_run(work->pool, (n + COVER_BLOCK - 1) / COVER_BLOCK, question_task, &q, work->cancel))
+        return SHEEN_ERR_CANCELLED;
+    *open = atomic_load(&q.open);
+    return SHEEN_OK;
+}
 
 static void cover_task(void *user, size_t item, unsigned worker)
 {
@@ -35,9 +70,7 @@ static void cover_task(void *user, size_t item, unsigned worker)
     size_t end = (item + 1) * COVER_BLOCK < w->n_open ? (item + 1) * COVER_BLOCK : w->n_open;
     for (size_t i = item * COVER_BLOCK; i < end; ++i) {
         const ShadingPoint *p = &w->points[w->open[i]];
-        Contributors c;
-        sheen_store_find(w->kind->store, p->point.p, p->point.n, 0.0f, &c);
-        w->covered[i] = c.cover > 1 || w->made_at[w->open[i]];
+        w->covered[i] = w->made_at[w->open[i]] || is_covered(w->kind->store, p);
         if (w->covered[i]) continue;
         float most = SHEEN_REACH_MAX_PX * p->footprint;
         float radius = sheen_store_expect_radius(w->kind->store, p->point.p);
@@ -48,8 +81,8 @@ static void cover_task(void *user, size_t item, unsigned worker)
 static void gather_task(void *user, size_t item, unsigned worker)
 {
     Waves *w = user;
-    uint32_t key = hash_combine(w->work->options.seed ^ 0x9a7eu, w->made + (uint32_t)item);
-    w->kind->make(w->kind->user, &w->points[w->accepted[item]], key, worker, &w->stats[worker], &w->records[item],
+    uint32_t key = hash_combine(w->work->options.seed ^ 0x9a7eu, w->before + w->made + (uint32_t)item);
+    w->kind->make(w->kind->maker, &w->points[w->accepted[item]], key, worker, &w->stats[worker], &w->records[item],
                   w->light + item * w->kind->light_size);
     if (worker == 0) {
         // Most of the points that a wave finds open it covers.
@@ -93,7 +126,8 @@ static SheenStatus choose(Waves *w)
 static SheenStatus insert_wave(Waves *w)
 {
     for (size_t i = 0; i < w->n_accepted; ++i) {
-        SheenStatus status = w->kind->insert(w->kind->user, &w->records[i], w->light + i * w->kind->light_size);
+        if (w->kind->around) sheen_store_bound(w->kind->around, &w->records[i]);
+        SheenStatus status = w->kind->insert(w->kind->cache, &w->records[i], w->light + i * w->kind->light_size);
         if (status != SHEEN_OK) return status;
         w->made_at[w->accepted[i]] = 1;
     }
@@ -123,6 +157,7 @@ SheenStatus sheen_fill_run(const SheenWork *work, const RecordKind *kind, const 
     if (n > UINT32_MAX) return SHEEN_ERR_NOMEM;
     unsigned workers = sheen_pool_size(work->pool);
     Waves w = {.work = work, .kind = kind, .points = points, .n = n, .made = kind->store->n};
+    w.before = kind->around ? kind->around->n : 0;
     w.stats = calloc(workers, sizeof *w.stats);
     w.open = malloc(n * sizeof *w.open);
     w.covered = malloc(n);

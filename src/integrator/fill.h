@@ -6,21 +6,32 @@
 #include "cache/store.h"
 #include "integrator/visibility.h"
 
-/** How records of one kind are made and kept. */
+/** How records of one kind are made and where they are kept. */
 typedef struct RecordKind {
-    const SheenRecordStore *store;
     size_t light_size; // bytes of a record's light
-    void *user;
+    const void *maker;
     /** Makes the record of a point, and its light; a function of the point and the key alone. Thread-safe for workers
      *  of different numbers. */
-    void (*make)(void *user, const ShadingPoint *p, uint32_t key, unsigned worker, SheenStats *stats, Record *record,
-                 void *light);
+    void (*make)(const void *maker, const ShadingPoint *p, uint32_t key, unsigned worker, SheenStats *stats,
+                 Record *record, void *light);
+    const SheenRecordStore *store;  // of the cache
+    const SheenRecordStore *around; // other records that bound the radii of new ones; may be NULL
+    void *cache;
     /** Stores both, copied. Errors: SHEEN_ERR_NOMEM. */
-    SheenStatus (*insert)(void *user, const Record *record, const void *light);
+    SheenStatus (*insert)(void *cache, const Record *record, const void *light);
 } RecordKind;
 
 /**
- * Adds records until each point is covered. The result depends on the points and their order only.
+ * @param points  [n]
+ * @param open    out: whether a point needs a further record
+ * Errors: SHEEN_ERR_CANCELLED.
+ */
+SHEEN_NODISCARD SheenStatus sheen_fill_is_open(const SheenWork *work, const SheenRecordStore *store,
+                                               const ShadingPoint points[], size_t n, bool *open);
+
+/**
+ * Adds records until each point was covered once: later records' clamping may have uncovered some again. The result
+ * depends on the store, the points and their order only.
  * @param points  [n] shading points, in the order of their pixels
  * Errors: SHEEN_ERR_NOMEM, SHEEN_ERR_CANCELLED.
  */

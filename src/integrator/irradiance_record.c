@@ -7,17 +7,14 @@
 #include <stdlib.h>
 
 struct SheenIrradianceMaker {
-    SheenIrradianceCache *cache;
     SheenGatherer gatherer;
 };
 
-SheenStatus sheen_irradiance_maker_create(const SheenWork *work, const SheenDeep *deep, SheenIrradianceCache *cache,
-                                          SheenIrradianceMaker **out)
+SheenStatus sheen_irradiance_maker_create(const SheenWork *work, const SheenDeep *deep, SheenIrradianceMaker **out)
 {
     *out = NULL;
     SheenIrradianceMaker *m = calloc(1, sizeof *m);
     if (!m) return SHEEN_ERR_NOMEM;
-    m->cache = cache;
     SheenStrata strata = sheen_strata_cosine(work->options.gather_rays);
     if (!sheen_gatherer_init(work, deep, strata, &m->gatherer)) {
         sheen_irradiance_maker_destroy(&m);
@@ -35,10 +32,10 @@ void sheen_irradiance_maker_destroy(SheenIrradianceMaker **maker)
     *maker = NULL;
 }
 
-static void make(void *user, const ShadingPoint *p, uint32_t key, unsigned worker, SheenStats *stats, Record *record,
-                 void *out)
+static void make(const void *maker, const ShadingPoint *p, uint32_t key, unsigned worker, SheenStats *stats,
+                 Record *record, void *out)
 {
-    const SheenIrradianceMaker *m = user;
+    const SheenIrradianceMaker *m = maker;
     const SheenOptions *o = &m->gatherer.work->options;
     IrradianceLight *light = out;
     float R_min = record_least_radius(o, p->footprint);
@@ -55,13 +52,12 @@ static void make(void *user, const ShadingPoint *p, uint32_t key, unsigned worke
     estimate_world_gradient(&h->frame, e.rotation, light->rotation);
 }
 
-static SheenStatus insert(void *user, const Record *record, const void *light)
+static SheenStatus insert(void *cache, const Record *record, const void *light)
 {
-    const SheenIrradianceMaker *m = user;
-    return sheen_irradiance_cache_insert(m->cache, record, light);
+    return sheen_irradiance_cache_insert(cache, record, light);
 }
 
-RecordKind sheen_irradiance_kind(SheenIrradianceMaker *maker)
+RecordKind sheen_irradiance_kind(const SheenIrradianceMaker *maker, SheenIrradianceCache *cache)
 {
-    return (RecordKind){maker->cache->store, sizeof(IrradianceLight), maker, make, insert};
+    return (RecordKind){sizeof(IrradianceLight), maker, make, cache->store, NULL, cache, insert};
 }

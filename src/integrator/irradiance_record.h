@@ -11,13 +11,13 @@ typedef struct SheenIrradianceMaker SheenIrradianceMaker;
 
 /**
  * @param deep  light beyond the first bounce; NULL when it is traced as paths, or when there is none
- * @param out   owned by the caller; borrows work, deep and cache
+ * @param out   owned by the caller; borrows work and deep
  */
 SHEEN_NODISCARD SheenStatus sheen_irradiance_maker_create(const SheenWork *work, const SheenDeep *deep,
-                                                          SheenIrradianceCache *cache, SheenIrradianceMaker **out);
+                                                          SheenIrradianceMaker **out);
 void sheen_irradiance_maker_destroy(SheenIrradianceMaker **maker);
 
-/** What sheen_fill_run needs; borrows the maker. */
-RecordKind sheen_irradiance_kind(SheenIrradianceMaker *maker);
+/** What sheen_fill_run needs to fill a cache; borrows both. */
+RecordKind sheen_irradiance_kind(const SheenIrradianceMaker *maker, SheenIrradianceCache *cache);
 
 #endif

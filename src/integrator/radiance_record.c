@@ -9,7 +9,7 @@
 #include <string.h>
 
 struct SheenRadianceMaker {
-    SheenRadianceCache *cache;
+    const SheenRadianceCache *like;
     SheenGatherer gatherer;
     SheenRadianceTables *tables;
 };
@@ -21,15 +21,15 @@ static SheenStrata strata_for(const SheenOptions *o, unsigned order)
     return sheen_strata_uniform(o->gather_rays > least ? o->gather_rays : least);
 }
 
-SheenStatus sheen_radiance_maker_create(const SheenWork *work, const SheenDeep *deep, SheenRadianceCache *cache,
+SheenStatus sheen_radiance_maker_create(const SheenWork *work, const SheenDeep *deep, const SheenRadianceCache *like,
                                         SheenRadianceMaker **out)
 {
     *out = NULL;
     SheenRadianceMaker *m = calloc(1, sizeof *m);
     if (!m) return SHEEN_ERR_NOMEM;
-    m->cache = cache;
-    SheenStrata strata = strata_for(&work->options, cache->order);
-    SheenStatus status = sheen_radiance_tables_create(strata, cache->basis, cache->order, &m->tables);
+    m->like = like;
+    SheenStrata strata = strata_for(&work->options, like->order);
+    SheenStatus status = sheen_radiance_tables_create(strata, like->basis, like->order, &m->tables);
     if (status == SHEEN_OK && !sheen_gatherer_init(work, deep, strata, &m->gatherer)) status = SHEEN_ERR_NOMEM;
     if (status != SHEEN_OK) sheen_radiance_maker_destroy(&m);
     *out = m;
@@ -71,12 +71,12 @@ static float relative_error(unsigned order, const RadianceEstimate *e)
     return norm > 0.0f ? e->error * (float)order / norm : 0.0f;
 }
 
-static void make(void *user, const ShadingPoint *p, uint32_t key, unsigned worker, SheenStats *stats, Record *record,
-                 void *out)
+static void make(const void *maker, const ShadingPoint *p, uint32_t key, unsigned worker, SheenStats *stats,
+                 Record *record, void *out)
 {
-    const SheenRadianceMaker *m = user;
+    const SheenRadianceMaker *m = maker;
     const SheenOptions *o = &m->gatherer.work->options;
-    const SheenRadianceCache *cache = m->cache;
+    const SheenRadianceCache *cache = m->like;
     float R_min = record_least_radius(o, p->footprint);
     const Hemisphere *h = sheen_gather_light(&m->gatherer, &p->point, R_min, key, worker, stats);
     float *light = out;
@@ -99,13 +99,12 @@ static void make(void *user, const ShadingPoint *p, uint32_t key, unsigned worke
     }
 }
 
-static SheenStatus insert(void *user, const Record *record, const void *light)
+static SheenStatus insert(void *cache, const Record *record, const void *light)
 {
-    const SheenRadianceMaker *m = user;
-    return sheen_radiance_cache_insert(m->cache, record, light);
+    return sheen_radiance_cache_insert(cache, record, light);
 }
 
-RecordKind sheen_radiance_kind(SheenRadianceMaker *maker)
+RecordKind sheen_radiance_kind(const SheenRadianceMaker *maker, SheenRadianceCache *cache)
 {
-    return (RecordKind){maker->cache->store, radiance_light_floats(maker->cache) * sizeof(float), maker, make, insert};
+    return (RecordKind){radiance_light_floats(cache) * sizeof(float), maker, make, cache->store, NULL, cache, insert};
 }

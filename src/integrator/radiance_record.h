@@ -11,13 +11,14 @@ typedef struct SheenRadianceMaker SheenRadianceMaker;
 
 /**
  * @param deep  light beyond the first bounce; NULL when it is traced as paths, or when there is none
- * @param out   owned by the caller; borrows work, deep and cache
+ * @param like  a cache with the basis and the order of the records
+ * @param out   owned by the caller; borrows work, deep and `like`
  */
 SHEEN_NODISCARD SheenStatus sheen_radiance_maker_create(const SheenWork *work, const SheenDeep *deep,
-                                                        SheenRadianceCache *cache, SheenRadianceMaker **out);
+                                                        const SheenRadianceCache *like, SheenRadianceMaker **out);
 void sheen_radiance_maker_destroy(SheenRadianceMaker **maker);
 
-/** What sheen_fill_run needs; borrows the maker. */
-RecordKind sheen_radiance_kind(SheenRadianceMaker *maker);
+/** What sheen_fill_run needs to fill a cache; borrows both. */
+RecordKind sheen_radiance_kind(const SheenRadianceMaker *maker, SheenRadianceCache *cache);
 
 #endif

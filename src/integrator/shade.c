@@ -23,7 +23,7 @@ typedef struct Shader {
 
 typedef struct ShadeTask {
     const SheenWork *work;
-    const SheenCaches *caches;
+    const PictureCaches *caches;
     uint32_t first;
     Picture *picture;
     Shader *shaders;       // [workers]
@@ -124,11 +124,12 @@ static void add_cache_layers(const SheenWork *work, const SheenRecordStore *stor
     if (dot) film_add(film, SHEEN_AOV_RECORDS, x, y, rgb_gray(1.0f));
 }
 
-static bool indirect_diffuse(const SheenWork *work, const SheenCaches *caches, const ShadingPoint *p, Picture *picture,
-                             SheenStats *stats)
+// @param cache  may be NULL @return false where its records say nothing
+static bool indirect_diffuse(const SheenWork *work, const SheenIrradianceCache *cache, const ShadingPoint *p,
+                             Picture *picture, SheenStats *stats)
 {
-    const SheenIrradianceCache *cache = caches->irradiance;
     Contributors c;
+    if (!cache) return false;
     sheen_store_find(cache->store, p->point.p, p->point.n, 0.0f, &c);
     if (c.n == 0) return false;
     Rgb E = sheen_irradiance_interpolate(cache->store, cache->light, &c, p->point.p, p->point.n);
@@ -137,12 +138,13 @@ static bool indirect_diffuse(const SheenWork *work, const SheenCaches *caches, c
     return true;
 }
 
-static bool indirect_glossy(const SheenWork *work, const SheenCaches *caches, const GlossyPoint *g, const Rgb lobes[],
-                            Picture *picture, SheenStats *stats)
+// @param cache  may be NULL @return false where its records say nothing
+static bool indirect_glossy(const SheenWork *work, const SheenRadianceCache *cache, const GlossyPoint *g,
+                            const Rgb lobes[], Picture *picture, SheenStats *stats)
 {
-    const SheenRadianceCache *cache = caches->radiance[g->basis];
     const ShadingPoint *p = &g->at;
     Contributors c;
+    if (!cache) return false;
     sheen_store_find(cache->store, p->point.p, p->point.n, 0.0f, &c);
     if (c.n == 0) return false;
     RadianceLobe lobe = {g->order, lobes + g->lobe};
@@ -154,17 +156,22 @@ static bool indirect_glossy(const SheenWork *work, const SheenCaches *caches, co
 
 // Adds the indirect light of points. @param uncovered  gets those without a record; NULL: they are left out
 // @return false when out of memory
-static bool indirect_light(const SheenWork *work, const SheenCaches *caches, const SeenPoints *seen, Picture *picture,
+static bool indirect_light(const SheenWork *work, const PictureCaches *caches, const SeenPoints *seen, Picture *picture,
                            SeenPoints *uncovered, SheenStats *stats)
 {
+    static const SheenCaches none = {0};
+    const SheenCaches *kept = caches->kept ? caches->kept : &none, *own = caches->own ? caches->own : &none;
     for (size_t i = 0; i < seen->n_points; ++i) {
         const ShadingPoint *p = &seen->points[i];
-        if (indirect_diffuse(work, caches, p, picture, stats) || !uncovered) continue;
-        if (!sheen_seen_add(p, 1, uncovered)) return false;
+        bool covered = indirect_diffuse(work, kept->irradiance, p, picture, stats) ||
+                       indirect_diffuse(work, own->irradiance, p, picture, stats);
+        if (!covered && uncovered && !sheen_seen_add(p, 1, uncovered)) return false;
     }
     for (size_t i = 0; i < seen->n_glossy; ++i) {
         const GlossyPoint *g = &seen->glossy[i];
-        if (indirect_glossy(work, caches, g, seen->lobes, picture, stats) || !uncovered) continue;
+        bool covered = indirect_glossy(work, kept->radiance[g->basis], g, seen->lobes, picture, stats) ||
+                       indirect_glossy(work, own->radiance[g->basis], g, seen->lobes, picture, stats);
+        if (covered || !uncovered) continue;
         if (!sheen_seen_add_glossy(&g->at, g->basis, g->order, seen->lobes + g->lobe, uncovered)) return false;
     }
     return true;
@@ -210,7 +217,7 @@ static void shade_task(void *user, size_t item, unsigned worker)
     if (worker == 0) progress_report(t->work->progress, "shade", (double)item / sheen_tile_count(t->work), 0);
 }
 
-SheenStatus sheen_shade(const SheenWork *work, const SheenCaches *caches, uint32_t first, Picture *picture,
+SheenStatus sheen_shade(const SheenWork *work, const PictureCaches *caches, uint32_t first, Picture *picture,
                         SeenPoints *uncovered, SheenStats *stats)
 {
     unsigned workers = sheen_pool_size(work->pool);
@@ -243,7 +250,7 @@ SheenStatus sheen_shade(const SheenWork *work, const SheenCaches *caches, uint32
     return status;
 }
 
-void sheen_shade_uncovered(const SheenWork *work, const SheenCaches *caches, const SeenPoints *uncovered,
+void sheen_shade_uncovered(const SheenWork *work, const PictureCaches *caches, const SeenPoints *uncovered,
                            Picture *picture, SheenStats *stats)
 {
     indirect_light(work, caches, uncovered, picture, NULL, stats);

@@ -3,15 +3,13 @@
 #ifndef SHEEN_INTEGRATOR_SHADE_H
 #define SHEEN_INTEGRATOR_SHADE_H
 
-#include "cache/irradiance_cache.h"
-#include "cache/radiance_cache.h"
+#include "integrator/caches.h"
 #include "integrator/visibility.h"
 
-/** The caches that a picture reads; any may be NULL. */
-typedef struct SheenCaches {
-    SheenIrradianceCache *irradiance;
-    SheenRadianceCache *radiance[SHEEN_BASIS_COUNT];
-} SheenCaches;
+/** What a picture reads: records that outlive it and, where these say nothing, its own. Either may be NULL. */
+typedef struct PictureCaches {
+    const SheenCaches *kept, *own;
+} PictureCaches;
 
 /**
  * Shades samples [first, ...) of every pixel up to as many as picture->samples has.
@@ -20,11 +18,11 @@ typedef struct SheenCaches {
  *                   the order of tiles
  * Errors: SHEEN_ERR_NOMEM, SHEEN_ERR_CANCELLED.
  */
-SHEEN_NODISCARD SheenStatus sheen_shade(const SheenWork *work, const SheenCaches *caches, uint32_t first,
+SHEEN_NODISCARD SheenStatus sheen_shade(const SheenWork *work, const PictureCaches *caches, uint32_t first,
                                         Picture *picture, SeenPoints *uncovered, SheenStats *stats);
 
 /** Adds the indirect light of points that have records by now. */
-void sheen_shade_uncovered(const SheenWork *work, const SheenCaches *caches, const SeenPoints *uncovered,
+void sheen_shade_uncovered(const SheenWork *work, const PictureCaches *caches, const SeenPoints *uncovered,
                            Picture *picture, SheenStats *stats);
 
 #endif

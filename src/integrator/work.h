@@ -133,10 +133,10 @@ static inline float sheen_eye_footprint(const SheenEye *eye, float length)
 }
 
 /**
- * Integrators: render the whole picture into the film and count into *stats.
+ * Renders the whole picture into the film and counts into *stats.
  * Errors: SHEEN_ERR_NOMEM, SHEEN_ERR_CANCELLED (the film is then incomplete).
  *
- * What both count as light, with B = options.bounces:
+ * What all integrators count as light, with B = options.bounces:
  * - A scattering at a delta lobe (mirror, glass) is no bounce: it is followed, up to SHEEN_PATH_MAX_DELTA times a path.
  *   Emitters seen through delta lobes count fully; delta lights (point, spot, directional without a disk) cannot be
  * seen at all.
@@ -145,14 +145,12 @@ static inline float sheen_eye_footprint(const SheenEye *eye, float length)
  * - Every other scattering is one. Light reaches the eye after at most B + 1 of them: B = 0 is direct light only.
  * - A direction on different sides of a surface's geometric and of its shading normal carries nothing.
  *
- * sheen_path_render is the reference: path tracing with light samples and BSDF samples weighed by the power heuristic;
+ * This one is the reference: path tracing with light samples and BSDF samples weighed by the power heuristic;
  * options.light_samples where a path first scatters, one at later vertices. With options.time_limit it
  * makes passes until the next would end too late, whatever options.spp says, at least one. The picture is a function of
  * scene, size, seed and stats->spp_done alone: not of threads and passes. Non-finite samples are counted and add
  * nothing. Layers of the cache stay zero.
  */
 SHEEN_NODISCARD SheenStatus sheen_path_render(const SheenWork *work, SheenFilm *film, SheenStats *stats);
-SHEEN_NODISCARD SheenStatus sheen_irradiance_render(const SheenWork *work, SheenFilm *film, SheenStats *stats);
-SHEEN_NODISCARD SheenStatus sheen_radiance_render(const SheenWork *work, SheenFilm *film, SheenStats *stats);
 
 #endif

@@ -3,14 +3,7 @@
 #ifndef SHEEN_RENDER_RENDER_H
 #define SHEEN_RENDER_RENDER_H
 
-#include "film/film.h"
-#include "integrator/work.h"
-
-typedef enum SheenIntegrator {
-    SHEEN_INTEGRATOR_RADIANCE,
-    SHEEN_INTEGRATOR_IRRADIANCE,
-    SHEEN_INTEGRATOR_PATH
-} SheenIntegrator;
+#include "render/session.h"
 
 typedef struct SheenRenderSettings {
     SheenIntegrator integrator;

@@ -41,7 +41,7 @@ static void smooth(SheenIrradianceCache *c, unsigned threads)
 {
     SheenPool *pool;
     assert_int_equal(sheen_pool_create(threads, &pool), SHEEN_OK);
-    assert_int_equal(sheen_irradiance_cache_smooth(c, &bounds, pool, NULL), SHEEN_OK);
+    assert_int_equal(sheen_irradiance_cache_smooth(c, 0, &bounds, pool, NULL), SHEEN_OK);
     sheen_pool_destroy(&pool);
 }
 
