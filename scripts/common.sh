@@ -6,7 +6,7 @@ JOBS=$(nproc 2>/dev/null || echo 2)
 
 # What building needs on Debian 12. libc6-dev is only recommended by gcc, so a minimal system may lack it.
 BUILD_PACKAGES=(gcc libc6-dev cmake make pkg-config libembree-dev libopenexr-dev libpng-dev libjpeg-dev libstb-dev
-    libexpat1-dev libjansson-dev zlib1g-dev)
+    libexpat1-dev libjansson-dev zlib1g-dev libzstd-dev libxxhash-dev)
 TEST_PACKAGES=(libcmocka-dev)
 
 say() { printf '%s\n' "$*" >&2; }

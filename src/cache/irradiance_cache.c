@@ -27,7 +27,8 @@ void sheen_irradiance_cache_destroy(SheenIrradianceCache **cache)
     *cache = NULL;
 }
 
-SheenStatus sheen_irradiance_cache_insert(SheenIrradianceCache *c, const Record *record, const IrradianceLight *light)
+// Puts the light where the next record's will be.
+static SheenStatus keep_light(SheenIrradianceCache *c, const IrradianceLight *light)
 {
     uint32_t n = c->store->n;
     if (n == c->capacity) {
@@ -39,7 +40,19 @@ SheenStatus sheen_irradiance_cache_insert(SheenIrradianceCache *c, const Record 
         c->capacity = capacity;
     }
     c->light[n] = *light;
-    return sheen_store_insert(c->store, record);
+    return SHEEN_OK;
+}
+
+SheenStatus sheen_irradiance_cache_insert(SheenIrradianceCache *c, const Record *record, const IrradianceLight *light)
+{
+    SheenStatus status = keep_light(c, light);
+    return status == SHEEN_OK ? sheen_store_insert(c->store, record) : status;
+}
+
+SheenStatus sheen_irradiance_cache_append(SheenIrradianceCache *c, const Record *record, const IrradianceLight *light)
+{
+    SheenStatus status = keep_light(c, light);
+    return status == SHEEN_OK ? sheen_store_append(c->store, record) : status;
 }
 
 Rgb sheen_irradiance_interpolate(const SheenRecordStore *store, const IrradianceLight light[], const Contributors *c,

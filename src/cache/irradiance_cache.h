@@ -50,6 +50,10 @@ void sheen_irradiance_cache_destroy(SheenIrradianceCache **cache);
 SHEEN_NODISCARD SheenStatus sheen_irradiance_cache_insert(SheenIrradianceCache *cache, const Record *record,
                                                           const IrradianceLight *light);
 
+/** As sheen_store_append; stores a copy of the light too. */
+SHEEN_NODISCARD SheenStatus sheen_irradiance_cache_append(SheenIrradianceCache *cache, const Record *record,
+                                                          const IrradianceLight *light);
+
 uint64_t sheen_irradiance_cache_bytes(const SheenIrradianceCache *cache);
 
 #endif

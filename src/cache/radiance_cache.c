@@ -39,7 +39,8 @@ void sheen_radiance_cache_destroy(SheenRadianceCache **cache)
     *cache = NULL;
 }
 
-SheenStatus sheen_radiance_cache_insert(SheenRadianceCache *c, const Record *record, const float light[])
+// Puts the light where the next record's will be.
+static SheenStatus keep_light(SheenRadianceCache *c, const float light[])
 {
     uint32_t n = c->store->n;
     size_t floats = radiance_light_floats(c);
@@ -52,7 +53,19 @@ SheenStatus sheen_radiance_cache_insert(SheenRadianceCache *c, const Record *rec
         c->capacity = capacity;
     }
     memcpy(c->light + n * floats, light, floats * sizeof *light);
-    return sheen_store_insert(c->store, record);
+    return SHEEN_OK;
+}
+
+SheenStatus sheen_radiance_cache_insert(SheenRadianceCache *c, const Record *record, const float light[])
+{
+    SheenStatus status = keep_light(c, light);
+    return status == SHEEN_OK ? sheen_store_insert(c->store, record) : status;
+}
+
+SheenStatus sheen_radiance_cache_append(SheenRadianceCache *c, const Record *record, const float light[])
+{
+    SheenStatus status = keep_light(c, light);
+    return status == SHEEN_OK ? sheen_store_append(c->store, record) : status;
 }
 
 /** A lobe's coefficients with room for the padding. */

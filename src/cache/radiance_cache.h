@@ -43,6 +43,10 @@ static inline size_t radiance_light_floats(const SheenRadianceCache *cache)
 SHEEN_NODISCARD SheenStatus sheen_radiance_cache_insert(SheenRadianceCache *cache, const Record *record,
                                                         const float light[]);
 
+/** As sheen_store_append; stores a copy of the light too. */
+SHEEN_NODISCARD SheenStatus sheen_radiance_cache_append(SheenRadianceCache *cache, const Record *record,
+                                                        const float light[]);
+
 /** A lobe at a point: f(wo, .) cos(theta_i) in harmonics. */
 typedef struct RadianceLobe {
     unsigned order;          // at most that of the cache

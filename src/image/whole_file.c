@@ -10,8 +10,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const uint64_t max_file = (uint64_t)1 << 32;
-
 /** Reads to the end of the descriptor. @return 0 or an errno value; what was read is in *data in either case. */
 static int read_all(int fd, size_t expected, uint8_t **data, size_t *size)
 {
@@ -20,7 +18,7 @@ static int read_all(int fd, size_t expected, uint8_t **data, size_t *size)
     if (!*data) return ENOMEM;
     for (;;) {
         if (*size == capacity) {
-            if (capacity > max_file / 2) return EFBIG;
+            if (capacity > SHEEN_FILE_MAX / 2) return EFBIG;
             uint8_t *grown = realloc(*data, 2 * capacity);
             if (!grown) return ENOMEM;
             *data = grown;
@@ -43,7 +41,7 @@ SheenStatus sheen_file_read(const char *path, const SheenLog *log, uint8_t **dat
     int error = fstat(fd, &info) == 0 ? 0 : errno;
     size_t expected = 4095;
     if (!error && S_ISREG(info.st_mode)) {
-        if ((uint64_t)info.st_size >= max_file) error = EFBIG;
+        if ((uint64_t)info.st_size > SHEEN_FILE_MAX) error = EFBIG;
         expected = (size_t)info.st_size;
     }
     if (!error) error = read_all(fd, expected, data, size);

@@ -8,6 +8,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/** Bytes that a file may have which is read as a whole. */
+#define SHEEN_FILE_MAX (((uint64_t)1 << 32) - 1)
+
 /**
  * Reads all of a file; a pipe too.
  * @param data  from malloc, owned by the caller; NULL on failure. An empty file gives a valid pointer.
