@@ -75,7 +75,7 @@ typedef struct Command {
     int (*run)(int argc, char **argv);
 } Command;
 
-extern const Command command_render, command_compare, command_info, command_help;
+extern const Command command_render, command_animate, command_compare, command_info, command_help;
 
 /** All commands in the order of the help; NULL ends the list. */
 extern const Command *const cli_commands[];

@@ -7,10 +7,11 @@
 #include <stdarg.h>
 #include <string.h>
 
-const Command *const cli_commands[] = {&command_render, &command_compare, &command_info, &command_help, NULL};
+const Command *const cli_commands[] = {&command_render, &command_animate, &command_compare,
+                                       &command_info,   &command_help,    NULL};
 
 // Commands that are known but not in this version.
-static const char *const later_commands[] = {"animate", "view", NULL};
+static const char *const later_commands[] = {"view", NULL};
 
 const Command *cli_find_command(const char *name)
 {

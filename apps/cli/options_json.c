@@ -3,6 +3,8 @@
 
 #include "json_text.h"
 
+#include <string.h>
+
 const char *choice_name(const Choice *choices, int value)
 {
     for (const Choice *c = choices; c->name; ++c)
@@ -38,9 +40,17 @@ static json_t *value_json(const Option *o, const void *field)
     }
     case OPTION_TEXTS:
         return texts_json(field);
-    default:
-        return json_null();
+    case OPTION_SET: {
+        json_t *names = json_array();
+        for (const Choice *c = o->choices; c->name; ++c)
+            if (c->value >= 0 && *(const unsigned *)field >> c->value & 1u)
+                json_array_append_new(names, json_string(c->name));
+        return names;
     }
+    case OPTION_LATER:
+        break;
+    }
+    return json_null();
 }
 
 json_t *options_json(const OptionTable *tables, const void *values)
@@ -55,4 +65,13 @@ json_t *options_json(const OptionTable *tables, const void *values)
         object = NULL;
     }
     return object;
+}
+
+json_t *options_json_value(const OptionTable *tables, const void *values, const char *name)
+{
+    const Option *o;
+    size_t offset;
+    for (size_t i = 0; (o = cli_option(tables, i, &offset)); ++i)
+        if (strcmp(o->name, name) == 0) return value_json(o, (const char *)values + offset);
+    return NULL;
 }

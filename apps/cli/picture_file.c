@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture_file.h"
 
+#include "frame_name.h"
 #include "options_json.h"
 
 #include "image/image.h"
@@ -9,15 +10,9 @@
 #include <string.h>
 #include <strings.h>
 
-static const char *base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 bool picture_notes_make(const Run *run, PictureNotes *notes)
 {
-    *notes = (PictureNotes){.scene = base_name(run->scene_path)};
+    *notes = (PictureNotes){.scene = path_last_part(run->scene_path)};
     snprintf(notes->seed, sizeof notes->seed, "%u", run->values->seed);
     json_t *options = options_json(run->command->options, run->all_values);
     notes->options = options ? json_dumps(options, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;

@@ -24,11 +24,18 @@ static void print_line(const ProgressShow *show, double done, uint64_t records, 
     memset(bar, '.', BAR_WIDTH);
     memset(bar, '#', (size_t)(done * BAR_WIDTH));
     bar[BAR_WIDTH] = '\0';
+    fputs(show->live ? "\r\033[K" : "sheen: ", stderr);
+    if (show->parts) fprintf(stderr, "%s %zu of %zu, ", show->parts, show->part + 1, show->n_parts);
     if (show->live)
-        fprintf(stderr, "\r\033[K%s [%s] %3.0f %%", show->stage, bar, 100.0 * done);
+        fprintf(stderr, "%s [%s] %3.0f %%", show->stage, bar, 100.0 * done);
     else
-        fprintf(stderr, "sheen: %s %.0f %%", show->stage, 100.0 * done);
+        fprintf(stderr, "%s %.0f %%", show->stage, 100.0 * done);
     if (records) fprintf(stderr, ", %llu records", (unsigned long long)records);
+    if (show->parts) {
+        // Parts are alike, the stages of one are not: what is left is told by the parts that are done.
+        elapsed = show->last_shown - show->parts_start;
+        done = (double)show->part / (double)show->n_parts;
+    }
     if (elapsed >= least_elapsed && done >= least_done && done < 1.0)
         fprintf(stderr, ", %.0f s left", elapsed * (1.0 - done) / done);
     if (!show->live) fputc('\n', stderr);
@@ -57,6 +64,14 @@ static void on_progress(void *user, const char *stage, double done, uint64_t rec
 SheenProgress progress_show_sink(ProgressShow *show)
 {
     return (SheenProgress){.fn = show->on ? on_progress : NULL, .user = show};
+}
+
+void progress_show_part(ProgressShow *show, const char *what, size_t part, size_t n)
+{
+    if (part == 0 || show->parts != what) show->parts_start = sheen_clock_seconds();
+    show->parts = what;
+    show->part = part;
+    show->n_parts = n;
 }
 
 void progress_show_clear(ProgressShow *show)

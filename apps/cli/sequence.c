@@ -2,6 +2,7 @@
 #include "sequence.h"
 
 #include "cli.h"
+#include "frame_name.h"
 
 #include "image/image.h"
 
@@ -12,7 +13,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { max_digits = 9 }; // so that a number fits into a long everywhere
+enum { max_digits = 9 }; // of a frame's number, see FRAME_MAX
 
 static bool is_folder(const char *path)
 {
@@ -20,30 +21,11 @@ static bool is_folder(const char *path)
     return stat(path, &s) == 0 && S_ISDIR(s.st_mode);
 }
 
-static const char *last_part(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 bool sequence_is(const char *path)
 {
     struct stat s;
     if (stat(path, &s) == 0) return S_ISDIR(s.st_mode);
-    return strchr(last_part(path), '#') != NULL;
-}
-
-/** Matches a name with a pattern of one run of '#', which stands for as many digits, or more. */
-static bool match_pattern(const char *pattern, const char *name, long *number)
-{
-    size_t before = strcspn(pattern, "#"), digits = 0, hashes = strspn(pattern + before, "#");
-    if (strncmp(pattern, name, before) != 0) return false;
-    const char *first = name + before;
-    while (isdigit((unsigned char)first[digits])) ++digits;
-    // 0001 to 9999 and 10000, but not 00001.
-    if (digits < hashes || digits > max_digits || (digits > hashes && first[0] == '0')) return false;
-    *number = strtol(first, NULL, 10);
-    return strcmp(first + digits, pattern + before + hashes) == 0;
+    return strchr(path_last_part(path), '#') != NULL;
 }
 
 /** Takes the last run of digits before the ending. @return false when there is none. */
@@ -107,7 +89,7 @@ static bool collect(const char *path, const char *folder, size_t folder_size, co
     bool ok = true;
     for (struct dirent *e; ok && (e = readdir(dir));) {
         long number = 0;
-        if (pattern ? !match_pattern(pattern, e->d_name, &number)
+        if (pattern ? !frame_name_match(pattern, e->d_name, &number)
                     : e->d_name[0] == '.' || !sheen_image_readable_format(e->d_name))
             continue;
         if (!pattern && !last_number(e->d_name, &number)) out->numbered = false;
@@ -126,10 +108,11 @@ static bool sort(const char *path, Sequence *s)
         const SequenceFrame *a = &s->frames[i - 1], *b = &s->frames[i];
         if (sequence_compare(a, b, s->numbered) != 0) continue;
         if (s->numbered)
-            cli_error("%s: both '%s' and '%s' are frame %ld", path, last_part(a->path), last_part(b->path), b->number);
+            cli_error("%s: both '%s' and '%s' are frame %ld", path, path_last_part(a->path), path_last_part(b->path),
+                      b->number);
         else
-            cli_error("%s: both '%s' and '%s' are the picture '%s'", path, last_part(a->path), last_part(b->path),
-                      b->name);
+            cli_error("%s: both '%s' and '%s' are the picture '%s'", path, path_last_part(a->path),
+                      path_last_part(b->path), b->name);
         return false;
     }
     return true;
@@ -158,7 +141,7 @@ bool sequence_list(const char *path, Sequence *out)
         ok = collect(path, folder, n, NULL, out);
         free(folder);
     } else {
-        const char *pattern = last_part(path);
+        const char *pattern = path_last_part(path);
         ok = collect(path, path, (size_t)(pattern - path), pattern, out);
     }
     if (!ok) return false;

@@ -44,6 +44,22 @@ FrameStats frame_stats(long frame, double time, const SheenStats *stats)
     return (FrameStats){frame, time, records, records};
 }
 
+void stats_sum(SheenStats *total, size_t n, const SheenStats *frame)
+{
+    sheen_stats_add(total, frame);
+    total->time_visibility += frame->time_visibility;
+    total->time_fill += frame->time_fill;
+    total->time_direct += frame->time_direct;
+    total->time_interpolate += frame->time_interpolate;
+    total->records += frame->records;
+    total->radiance_records += frame->radiance_records;
+    total->deep_records += frame->deep_records;
+    total->passes += frame->passes;
+    if (frame->cache_bytes > total->cache_bytes) total->cache_bytes = frame->cache_bytes;
+    if (n == 0 || frame->spp_done < total->spp_done) total->spp_done = frame->spp_done;
+    total->spp_mean += (frame->spp_mean - total->spp_mean) / (double)(n + 1);
+}
+
 static json_t *frames_json(const RunStats *run)
 {
     json_t *frames = json_array();

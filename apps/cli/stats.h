@@ -24,6 +24,12 @@ typedef struct RunStats {
 /** @return the figures of a picture whose records were all made for it. */
 FrameStats frame_stats(long frame, double time, const SheenStats *stats);
 
+/**
+ * Adds the figures of a frame to those of the `n` frames before: times and counters are sums, samples of a pixel the
+ * least and the mean, memory the most.
+ */
+void stats_sum(SheenStats *total, size_t n, const SheenStats *frame);
+
 /** @return the object as text from malloc, or NULL when out of memory. Keys never change their meaning. */
 char *stats_to_json(const Run *run, const RunStats *stats);
 

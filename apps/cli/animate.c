@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+// `sheen animate`: a range of frames of a scene file.
+#include "animate_options.h"
+#include "cli.h"
+#include "frame_name.h"
+#include "frame_outputs.h"
+#include "manifest.h"
+#include "run.h"
+#include "stats.h"
+
+#include "base/clock.h"
+#include "io/camera_path_file.h"
+
+#include <stdlib.h>
+
+/** A run of the command, from scene file to frames. */
+typedef struct Animation {
+    Run run;
+    AnimateValues values;
+    SheenCameraPath *path; // NULL: the scene's camera stands still
+    SheenCamera *cameras;  // [n], of the frames
+    size_t n;              // from values.first to values.last
+    SheenRenderSettings settings;
+    PictureNotes notes;
+    Manifest manifest;
+    FrameStats *frames; // [n_done] of those that are whole
+    size_t n_done;
+    RunStats stats;
+} Animation;
+
+static bool some_has_layers(const TextList *outputs)
+{
+    for (size_t i = 0; i < outputs->n; ++i)
+        if (picture_file_has_layers(outputs->items[i])) return true;
+    return false;
+}
+
+/** Reads --camera-path and decides which frames there are. @return the exit code */
+static int read_path(Animation *a, const SheenCamera *camera)
+{
+    AnimateValues *v = &a->values;
+    double first = 0.0, last = 0.0;
+    if (v->camera_path) {
+        SheenStatus status = sheen_camera_path_read(v->camera_path, camera, &a->run.log, &a->path);
+        int code = report_exit_code(&a->run.report, status, v->camera_path);
+        if (code != CLI_DONE) return code;
+        sheen_camera_path_range(a->path, &first, &last);
+    }
+    if (v->frames) return CLI_DONE;
+    if (ceil(first) < 0.0 || floor(last) > FRAME_MAX || ceil(first) > floor(last))
+        return cli_usage_error(a->run.command, "--frames: the keys of '%s' hold no frame from 0 to %d; say which",
+                               v->camera_path, FRAME_MAX);
+    v->first = (long)ceil(first), v->last = (long)floor(last);
+    return CLI_DONE;
+}
+
+/** Finds the cameras of all frames, so that a bad one is told before the work. @return the exit code */
+static int place_cameras(Animation *a, const SheenCamera *camera)
+{
+    const AnimateValues *v = &a->values;
+    a->n = (size_t)(v->last - v->first) + 1;
+    a->cameras = malloc(a->n * sizeof *a->cameras);
+    a->frames = malloc(a->n * sizeof *a->frames);
+    if (!a->cameras || !a->frames) return cli_error("--frames: %zu are too many for the memory", a->n);
+    for (size_t i = 0; i < a->n; ++i) {
+        a->cameras[i] = *camera;
+        if (!a->path) continue;
+        SheenCameraFault fault = sheen_camera_path_at(a->path, (double)(v->first + (long)i), &a->cameras[i]);
+        if (fault)
+            return cli_error("%s: at frame %ld the camera %s", v->camera_path, v->first + (long)i,
+                             sheen_camera_fault_text(fault));
+    }
+    return CLI_DONE;
+}
+
+/** All that can go wrong before the first frame. @return the exit code */
+static int prepare(Animation *a)
+{
+    Run *run = &a->run;
+    AnimateValues *v = &a->values;
+    uint32_t index;
+    if (!run_find_camera(run, &index)) return CLI_USAGE;
+    const SheenCamera *camera = &run->scene->cameras[index];
+    a->settings = render_values_settings(&v->render, camera, index);
+    int code = read_path(a, camera);
+    if (code == CLI_DONE) code = place_cameras(a, camera);
+    if (code != CLI_DONE) return code;
+    if (!frame_outputs_check_files(&v->render.outputs, v->first, v->last)) return CLI_WORLD;
+
+    const char *camera_path = v->camera_path;
+    // Pictures tell how they were made, wherever that was.
+    if (camera_path) v->camera_path = path_last_part(camera_path);
+    if (!picture_notes_make(run, &a->notes)) return cli_error("%s: out of memory", run->scene_path);
+    code = manifest_make(run, camera_path, v->first, &a->manifest);
+    if (code == CLI_DONE && v->resume) code = manifest_resume(run->command, &v->render.outputs, v->last, &a->manifest);
+    if (code == CLI_DONE) code = run_start_threads(run);
+    return code;
+}
+
+/** Renders and writes a frame. @return the exit code */
+static int render_frame(Animation *a, size_t i)
+{
+    Run *run = &a->run;
+    long number = a->values.first + (long)i;
+    double start = sheen_clock_seconds();
+    SheenFilm *film = NULL;
+    SheenStats stats;
+    SheenRenderTimes times;
+    a->settings.view = &a->cameras[i];
+    SheenProgress progress = progress_show_sink(&run->show);
+    SheenStatus status = sheen_render(run->scene, &a->settings, run->pool, run->interrupted, &progress, &run->log,
+                                      &film, &stats, &times);
+    if (status == SHEEN_ERR_CANCELLED) return CLI_INTERRUPTED;
+    int code = report_exit_code(&run->report, status, run->scene_path);
+    double rendered = sheen_clock_seconds();
+    if (code == CLI_DONE) {
+        status = frame_outputs_write(run, number, film, &a->notes);
+        code = report_exit_code(&run->report, status, a->values.render.outputs.items[0]);
+    }
+    sheen_film_destroy(&film);
+    if (code != CLI_DONE) return code;
+    a->manifest.next = number + 1;
+    if (!manifest_write(&a->manifest, &a->values.render.outputs)) return CLI_WORLD;
+    double end = sheen_clock_seconds();
+    a->stats.build += times.build;
+    a->stats.write += end - rendered;
+    stats_sum(&a->stats.render, a->n_done, &stats);
+    a->frames[a->n_done++] = frame_stats(number, end - start, &stats);
+    return CLI_DONE;
+}
+
+static int interrupted(Animation *a)
+{
+    char what[96];
+    snprintf(what, sizeof what, "%zu frames of %zu are whole", (size_t)(a->manifest.next - a->values.first), a->n);
+    return run_tell_interrupted(&a->run, what);
+}
+
+static int render_frames(Animation *a)
+{
+    size_t begin = (size_t)(a->manifest.next - a->values.first);
+    // So that a later run does not take what lies there from before for whole.
+    if (begin < a->n && !manifest_write(&a->manifest, &a->values.render.outputs)) return CLI_WORLD;
+    int code = CLI_DONE;
+    for (size_t i = begin; i < a->n && code == CLI_DONE; ++i) {
+        if (run_is_interrupted(&a->run)) return CLI_INTERRUPTED;
+        progress_show_part(&a->run.show, "frame", i - begin, a->n - begin);
+        code = render_frame(a, i);
+    }
+    progress_show_clear(&a->run.show);
+    run_warn_nonfinite(&a->run, a->stats.render.nonfinite_samples);
+    return code == CLI_DONE && a->run.report.failed ? CLI_WORLD : code;
+}
+
+static void print_summary(const Animation *a)
+{
+    const RenderValues *v = &a->values.render;
+    if (a->run.report.quiet || v->progress == PROGRESS_NONE) return;
+    fprintf(stderr, "sheen: %s: %zu frames of %u x %u, %s, %.2f s\n", v->outputs.items[0], a->n_done, v->size.width,
+            v->size.height, render_integrator_name(v), a->stats.total);
+}
+
+/** Statistics and summary, of an interrupted run too. @return the exit code */
+static int report(Animation *a, int code)
+{
+    a->stats.frames = a->frames;
+    a->stats.n_frames = a->n_done;
+    a->stats.load = a->run.load;
+    a->stats.total = sheen_clock_seconds() - a->run.start;
+    if (code == CLI_INTERRUPTED) interrupted(a);
+    int written =
+        a->values.render.stats ? run_write_stats(&a->values.render, stats_to_json(&a->run, &a->stats)) : CLI_DONE;
+    if (code == CLI_DONE && written == CLI_DONE) print_summary(a);
+    return code == CLI_DONE ? written : code;
+}
+
+static void animation_free(Animation *a)
+{
+    free(a->cameras);
+    free(a->frames);
+    picture_notes_free(&a->notes);
+    manifest_free(&a->manifest);
+    sheen_camera_path_destroy(&a->path);
+    run_end(&a->run);
+}
+
+static int run_animate(int argc, char **argv)
+{
+    Animation a = {.values = animate_values_default()};
+    a.run = (Run){.command = &command_animate,
+                  .all_values = &a.values,
+                  .values = &a.values.render,
+                  .start = sheen_clock_seconds()};
+    AnimateValues *v = &a.values;
+    int code;
+    if (!cli_parse(&command_animate, &argc, argv, v, &code)) return code;
+    if (argc < 2) return cli_usage_error(&command_animate, "SCENE: the scene file is missing");
+    if (argc > 2) return cli_usage_error(&command_animate, "SCENE: '%s' is one scene file too many", argv[2]);
+    if (!animate_values_check(&command_animate, v)) return CLI_USAGE;
+    // Before a large scene is loaded; all frames are looked at when it is known which there are.
+    if (!frame_outputs_check_files(&v->render.outputs, v->first, v->first) || !run_check_stats(&v->render))
+        return CLI_WORLD;
+
+    run_begin(&a.run, argv[1]);
+    run_warn_about_layers(&a.run, some_has_layers(&v->render.outputs));
+    code = run_load(&a.run);
+    if (code == CLI_DONE) code = prepare(&a);
+    if (code == CLI_DONE) {
+        code = render_frames(&a);
+        if (code == CLI_DONE || code == CLI_INTERRUPTED) code = report(&a, code);
+    }
+    animation_free(&a);
+    return code;
+}
+
+const Command command_animate = {
+    .name = "animate",
+    .operands = "SCENE -o FRAMES",
+    .summary = "a range of frames of a scene file",
+    .description =
+        "Renders a walkthrough: the scene stands still, and the camera moves along a path. Each frame is the picture "
+        "that sheen render makes of the scene with the camera of that frame.\n"
+        "Frames are written as they are finished. The same scene, options and seed give the same files, bit by bit, at "
+        "any number of threads, and after --resume.\n"
+        "Ctrl-C drops the frame in work and keeps those that are finished; twice stops at once.",
+    .options = animate_tables,
+    .example = "sheen animate scenes/glossy-box.xml --camera-path walk.json -o walk.####.png",
+    .run = run_animate,
+};

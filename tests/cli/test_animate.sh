@@ -1,0 +1,122 @@
+#!/bin/bash
+# sheen animate: its command line, its files, a camera that moves, runs that are stopped and gone on with.
+. "$(dirname "$0")/check.sh"
+
+cat >walk.json <<'END'
+{"keys": [{"frame": 0, "origin": [0.278, 0.273, -0.8], "target": [0.278, 0.273, 0]},
+          {"frame": 2, "origin": [0.4, 0.3, -0.6], "target": [0.278, 0.2, 0.2]},
+          {"frame": 5.5, "origin": [0.4, 0.3, -0.4], "target": [0.278, 0.2, 0.2], "fov": 60}]}
+END
+A=(animate "$SCENE" -o a.##.exr "${SMALL[@]}")
+
+# The command line.
+refused SCENE animate -o a.##.exr
+refused SCENE "${A[@]}" other.xml
+refused --output animate "$SCENE"
+refused --output animate "$SCENE" -o a.exr
+refused --output animate "$SCENE" -o '#/a.exr'
+refused --output animate "$SCENE" -o a.#.#.exr
+refused --output animate "$SCENE" -o a.##.jpg
+refused --output "${A[@]}" -o a.##.exr
+refused --output "${A[@]}" -o a.#.exr # a.100.exr would be both
+for frames in '' - 1- -1 2-1 a 1-b 1-2-3 1.5 +1 ' 1' 1000000000 99999999999999999999; do
+    refused --frames "${A[@]}" "--frames=$frames"
+done
+for option in fps temporal-accuracy max-lifespan time-limit; do
+    expect 2 "${A[@]}" "--$option" 1
+    says "^sheen: --$option: "
+done
+for value in extrapolated interpolated nosuch; do refused --temporal "${A[@]}" --temporal $value; done
+expect 1 "${A[@]}" --camera-path nosuch.json; says '^sheen: nosuch\.json: '
+echo '{"keys": [{"frame": 1}]}' >bad.json
+expect 1 "${A[@]}" --camera-path bad.json; says "^sheen: bad\.json:1:11: key 0: 'origin' is missing"
+echo '{"keys": [{"frame": 0.2, "origin": [0, 0, 0], "target": [0, 0, 1]},
+              {"frame": 0.8, "origin": [0, 0, 0], "target": [0, 0, 1]}]}' >bad.json
+refused --frames "${A[@]}" --camera-path bad.json
+echo '{"keys": [{"frame": 0, "origin": [0, 0, 0], "target": [0, 0, 1]},
+              {"frame": 2, "origin": [0, 0, 2], "target": [0, 0, 1]}]}' >bad.json
+expect 1 "${A[@]}" --camera-path bad.json; says '^sheen: bad\.json: at frame 1 the camera stands where it looks'
+mkdir -p there/a.03.exr
+expect 1 animate "$SCENE" -o nosuch/a.##.exr "${SMALL[@]}"; says '^sheen: nosuch/a\.00\.exr: the folder'
+expect 1 animate "$SCENE" -o there/a.##.exr --frames 0-3 "${SMALL[@]}"; says '^sheen: there/a\.03\.exr: is a folder'
+[ "$(echo a.*)" = 'a.*' ] || fail "a wrong command line left something: $(echo a.*)"
+
+# The path tells which frames there are; a frame is the picture that a camera in that place takes; the digits suffice.
+expect 0 "${A[@]}" --camera-path walk.json -o b.#.png --quiet --stats s.json; silent
+[ "$(echo a.*)" = 'a.##.exr.json a.00.exr a.01.exr a.02.exr a.03.exr a.04.exr a.05.exr' ] || fail "files: $(echo a.*)"
+[ "$(echo b.?.png)" = 'b.0.png b.1.png b.2.png b.3.png b.4.png b.5.png' ] || fail "files: $(echo b.*)"
+# The scene's camera stands at the first key.
+expect 0 render "$SCENE" -o one.exr "${SMALL[@]}"
+expect 0 compare one.exr a.00.exr
+grep -q '"mse": 0\.0,' out || fail "the first frame is not what sheen render makes"
+expect 0 compare one.exr a.02.exr
+grep -q '"mse": 0\.0,' out && fail "the camera does not move"
+expect 0 info a.04.exr
+grep -q 'sheen\.frame 4' out || fail "the EXR file does not tell its frame"
+python3 - 2>err <<'END' || fail "the statistics"
+import json
+s = json.load(open("s.json"))
+assert [f["frame"] for f in s["frames"]] == [0, 1, 2, 3, 4, 5]
+assert sum(f["new"] for f in s["frames"]) + s["records"]["deep"] == s["records"]["new"] > 0
+assert s["rays"]["camera"] >= 6 * 24 * 16 and s["spp_done"] == 1
+assert all(0 < f["time"] < s["time"]["total"] for f in s["frames"])
+END
+# One frame alone, at any number of threads, is the same file.
+mkdir alone
+expect 0 animate "$SCENE" -o alone/a.##.exr "${SMALL[@]}" --camera-path walk.json --frames 3 --threads 3
+cmp a.03.exr alone/a.03.exr || fail "frame 3 alone is another"
+n_checks=$((n_checks + 6))
+
+# Ctrl-C keeps what is whole, and nothing else.
+mkdir c d
+C=(animate "$SCENE" -o c/a.###.exr -o c/b.###.png "${SMALL[@]}" --camera-path walk.json)
+"$SHEEN" "${C[@]}" --frames 0-199 2>err >out &
+pid=$!
+for _ in $(seq 600); do
+    grep -q '"next": [1-9]' c/b.*.json 2>/dev/null && break
+    sleep 0.05
+done
+kill -INT $pid
+wait $pid; code=$?
+[ $code -eq 130 ] || fail "exit code $code instead of 130 after SIGINT"
+says '^sheen: interrupted; [1-9][0-9]* frames of 200 are whole$'
+n=$(sed 's/^sheen: interrupted; \([0-9]*\).*/\1/' err)
+[ "$(ls c | wc -l)" -eq $((2 * n + 2)) ] || fail "$n frames are whole, but there is: $(echo c/*)"
+
+# A later run goes on there, and gives what one run gives.
+touch -d '2001-01-01' c/*.exr
+expect 0 "${C[@]}" --frames "0-$((n + 1))" --resume --quiet --stats s.json; silent
+[ "$(grep -c '"frame":' s.json)" -eq 2 ] || fail "the resumed run did not make two frames"
+[ "$(find c -name '*.exr' ! -newermt '2002-01-01' | wc -l)" -eq "$n" ] || fail "a whole frame was made again"
+expect 0 animate "$SCENE" -o d/a.###.exr -o d/b.###.png "${SMALL[@]}" --camera-path walk.json --frames "0-$((n + 1))" --quiet
+for file in c/a.*.exr c/b.*.png; do cmp "$file" "d/${file#c/}" || fail "a resumed run gave another $file"; done
+expect 0 "${C[@]}" --frames "0-$((n + 1))" --resume --quiet --stats s.json; silent
+grep -q '"frame":' s.json && fail "all was there, and a frame was made"
+rm d/a.000.exr
+expect 0 animate "$SCENE" -o d/a.###.exr -o d/b.###.png "${SMALL[@]}" --camera-path walk.json --frames 0-1 --resume --quiet
+cmp c/a.000.exr d/a.000.exr || fail "a frame that was lost is not made again"
+
+# It refuses where something differs, and touches nothing.
+before=$(ls -l --time-style=full-iso c)
+refused '--resume: --accuracy was 0\.5 in the run that .* tells of, and is 0\.25 now' "${C[@]}" --resume --accuracy 0.25
+refused '--resume: --exposure was 0\.0 ' "${C[@]}" --resume --exposure 1
+refused '--resume: --aov was \[\] ' "${C[@]}" --resume --aov depth
+refused '--resume: --size was ' "${C[@]}" --resume --size 12x8
+sed 's/0.278/0.279/' walk.json >other.json
+expect 1 "${C[@]}" --resume --camera-path other.json
+says '^sheen: c/a\.###\.exr\.json: --resume: the camera path is not that of the earlier run$'
+sed 's/<scene/ <scene/' "$SCENE" >"$FOLDER/cornell-box.xml"
+cp -r "$SOURCE/scenes/cornell-box" .
+expect 1 animate cornell-box.xml "${C[@]:2}" --resume
+says '^sheen: c/a\.###\.exr\.json: --resume: the scene is not that of the earlier run$'
+[ "$(ls -l --time-style=full-iso c)" = "$before" ] || fail "a run that was refused changed something"
+for text in '' '{}' '[]' '{"whole frames": {"first": 3, "next": 1}, "made with": {}}'; do
+    echo "$text" >c/a.###.exr.json
+    expect 1 "${C[@]}" --resume; says '^sheen: c/a\.###\.exr\.json:'
+done
+
+# A run from the start does not believe what lies there from before.
+expect 0 "${C[@]}" --frames 0 --seed 2 --quiet
+expect 0 "${C[@]}" --frames 0-1 --seed 2 --resume --quiet
+cmp -s c/a.001.exr d/a.001.exr && fail "a frame of an older run was taken for one of this"
+passed
