@@ -23,6 +23,11 @@ typedef struct LobeTable {
     unsigned order[2];         // the largest that a reading may have, of each basis
 } LobeTable;
 
+/** The share of the error up to which a lobe is represented that is taken where the orders allow it. What an order
+ * misses of a lobe is not only blur: it rings, and beside a bright thing the ringing is brighter than what is there. On
+ * the wall of a box 5 % of missing energy leave an RMSE of 17 %, 0.5 % one of 9. */
+#define LOBE_FINE 0.1f
+
 struct SheenLobeTables {
     const SheenScene *scene;
     unsigned n; // n_max

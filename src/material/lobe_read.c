@@ -71,11 +71,12 @@ static Choice choose(const SheenLobeTables *all, const LobeTable *t, const float
     Choice c = {.share = smoothstep((allowed - end) / (0.5f * allowed)) * taps->fade, .band = 1.0f};
     if (!(c.share > 0.0f)) return (Choice){.n = 0};
     float before = 1.0f, error = 1.0f;
-    while (c.n < most && !(error <= allowed)) {
+    float wanted = LOBE_FINE * allowed;
+    while (c.n < most && !(error <= wanted)) {
         before = error;
         error = missing_at(t, data, taps, f, ++c.n) / energy;
     }
-    if (error < allowed && before > error) c.band = clampf((before - allowed) / (before - error), 0.0f, 1.0f);
+    if (error < wanted && before > error) c.band = clampf((before - wanted) / (before - error), 0.0f, 1.0f);
     c.error = maxf(error + sqrf(1.0f - c.band) * (before - error), 0.0f);
     return c;
 }

@@ -203,12 +203,12 @@ static SheenStatus allocate(const SheenLog *log, SheenLobeTables *all, size_t me
 
 // ---- what they are good for -------------------------------------------------------------------------------------
 
-/** The smallest order that represents a shape at a node; 0 for none. */
+/** The smallest order that represents a shape at a node well, or the largest; 0 where that does not represent it. */
 static unsigned order_of(const SheenLobeTables *all, const LobeTable *t, const float *at, unsigned shape)
 {
     if (!(error_of(&t->node, at, 0, all->n) <= all->error)) return 0;
     for (unsigned n = 1; n < all->n; ++n)
-        if (error_of(&t->node, at, shape, n) <= all->error) return n;
+        if (error_of(&t->node, at, shape, n) <= LOBE_FINE * all->error) return n;
     return all->n;
 }
 

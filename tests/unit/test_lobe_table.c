@@ -212,7 +212,8 @@ static void test_smooth_light_is_reflected(void **state)
 
 // ---- orders -----------------------------------------------------------------------------------------------------
 
-/** Smallest orders for a missing energy of 5 %, computed apart in double precision: tables of another program. */
+/** Smallest orders for a missing energy of 5 %, a tenth of what is allowed, computed apart in double precision: tables
+ *  of another program. */
 static void test_orders_of_phong(void **state)
 {
     (void)state;
@@ -225,7 +226,7 @@ static void test_orders_of_phong(void **state)
                  {BSDF("phong", F(exponent, 50)), {9, 9, 11}}};
     static Rgb c[SHEEN_BASIS_MAX];
     for (int i = 0; i < 4; ++i) {
-        Fixture f = fixture(lobes[i].xml, 14, 0);
+        Fixture f = fixture(lobes[i].xml, 14, 0.5f);
         Bsdf b = bsdf_at(f.scene, v2(0, 0));
         for (int k = 0; k < 3; ++k) {
             const float degrees[] = {0, 45, 75};
@@ -240,11 +241,11 @@ static void test_orders_of_phong(void **state)
     }
 }
 
-/** A stricter error takes higher orders, and keeps to it. */
+/** A stricter error takes higher orders, and keeps to a tenth of it. */
 static void test_stricter_errors(void **state)
 {
     (void)state;
-    const float errors[] = {0.2f, 0.05f, 0.01f, 0.00005f};
+    const float errors[] = {0.2f, 0.02f, 0.002f, 0.00005f};
     unsigned before = 0;
     for (int i = 0; i < 4; ++i) {
         Fixture f = fixture(BSDF("phong", F(exponent, 12)), 20, errors[i]);
@@ -252,7 +253,8 @@ static void test_stricter_errors(void **state)
         LobeReading reading;
         for (int k = 0; k < 2; ++k) { // from near the normal, where a table ends and is mirrored, as well
             double error = measure(&f, SHEEN_BASIS_HSH, &b, direction(k ? 0.018f : 0.6f, 2), &reading);
-            assert_true(error <= (double)errors[i] * 1.02 && reading.order > before && reading.share[1] == 1);
+            double share = reading.order < 20 ? 0.1 : 1.0; // of what is allowed, where the orders suffice
+            assert_true(error <= share * (double)errors[i] * 1.02 && reading.order > before && reading.share[1] == 1);
         }
         before = reading.order;
         destroy(&f);
