@@ -29,7 +29,7 @@ typedef struct DeepCell {
     Vec3 p, n, ng;  // the hit's vertex; p is off the surface, where rays leave; of the sky, where it shines in
     Rgb weight;     // radiance per irradiance there; black without vertex
     Rgb sky;        // radiance of the sky and of caustics
-    Rgb direct;     // weight times direct irradiance
+    Rgb direct;     // what direct light makes it send: weight times irradiance, of rough glossy surfaces what is seen
     float distance; // INFINITY for the sky
     uint32_t record[KEPT];
     float share[KEPT]; // of the records' irradiance; sum 1, or all 0 where no record covers the hit: it then takes the
@@ -158,14 +158,19 @@ static void gather_task(void *user, size_t item, unsigned worker)
     SheenDeep *d = t->deep;
     uint32_t record = t->first + (uint32_t)item;
     Hemisphere *h = &t->scratch[worker];
+    Rgb shine[DEEP_CELLS] = {0};
     sheen_hemisphere_begin(&d->points[record], point_key(d, record, 1), h);
+    h->gloss = true;
+    h->shine = shine;
     sheen_hemisphere_trace(d->work, &d->points[record], 1, h, &t->stats[worker]);
     sheen_hemisphere_add_caustics(d->work, &d->points[record], 1.0f, h, &t->stats[worker]);
     DeepCell *cells = cells_of(d, record);
     for (size_t i = 0; i < h->cells; ++i) {
         bool sky = isinf(h->distance[i]) && !h->specular[i];
-        cells[i] = (DeepCell){
-            .p = sky ? shines_in(d, record, h, i) : d->points[record].p, .sky = h->L[i], .distance = h->distance[i]};
+        cells[i] = (DeepCell){.p = sky ? shines_in(d, record, h, i) : d->points[record].p,
+                              .sky = h->L[i],
+                              .direct = shine[i],
+                              .distance = h->distance[i]};
         h->L[i] = rgb_gray(0.0f);
     }
     sheen_hemisphere_direct(d->work, 0, 1, h, &t->stats[worker]);
@@ -176,7 +181,7 @@ static void gather_task(void *user, size_t item, unsigned worker)
         c->n = v->point.n;
         c->ng = v->point.ng;
         c->weight = v->weight;
-        c->direct = h->L[v->cell];
+        c->direct = rgb_add(c->direct, h->L[v->cell]);
     }
 }
 

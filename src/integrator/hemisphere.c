@@ -121,7 +121,8 @@ static void receive(const SheenWork *work, const Followed *f, Rgb weight, uint32
     if (lit) {
         LightNumbers numbers = light_numbers(h->key, bounces, ray);
         Rgb L = sheen_glossy_lit_once(work, &f->surface, v3_neg(f->direction), numbers, stats);
-        if (rgb_finite(L)) h->L[cell] = rgb_add(h->L[cell], rgb_mul(through, L));
+        Rgb *to = h->shine ? h->shine : h->L;
+        if (rgb_finite(L)) to[cell] = rgb_add(to[cell], rgb_mul(through, L));
     }
     if (!f->scatters) return;
     Rgb reflected = rgb_scale(rgb_mul(through, f->point.reflectance), SHEEN_INV_PI);
@@ -182,6 +183,7 @@ void sheen_hemisphere_begin(const DiffusePoint *point, uint32_t key, Hemisphere 
     h->error = 0.0f;
     h->guide.n = 0;
     h->gloss = false;
+    h->shine = NULL;
 }
 
 void sheen_hemisphere_trace(const SheenWork *work, const DiffusePoint *point, unsigned bounces, Hemisphere *h,

@@ -35,6 +35,7 @@ typedef struct Hemisphere {
     uint32_t key;     // of all random numbers of this gather
     Guide guide;      // hot spots, for rays beside the first of each stratum
     bool gloss;       // direct light on rough glossy surfaces is what they send here, not the mean of their sides
+    Rgb *shine;       // [cells] gets it, beside L; the caller's. NULL: L does
     Vec3 *directions; // [cells] local
     Rgb *L;           // [cells] radiance so far
     Rgb *caustic;     // [cells] radiance of emitters seen through mirrors and glass

@@ -71,6 +71,16 @@ static float relative_error(unsigned order, const RadianceEstimate *e)
     return norm > 0.0f ? e->error * (float)order / norm : 0.0f;
 }
 
+// On a curved surface a record serves points whose horizon lies lower than its own on one side. There it takes what it
+// mirrors of the light above for what it did not see; black would be the worst of guesses, and an edge of the light
+// that an order resolves badly. Of a function and its mirror image those harmonics are left that are even in z, twice.
+static void mirror_below(unsigned order, Rgb c[])
+{
+    for (unsigned l = 0; l < order; ++l)
+        for (int m = -(int)l; m <= (int)l; ++m)
+            c[basis_index(l, m)] = rgb_scale(c[basis_index(l, m)], ((int)l + m) % 2 == 0 ? 2.0f : 0.0f);
+}
+
 static void make(const void *maker, const ShadingPoint *p, uint32_t key, unsigned worker, SheenStats *stats,
                  Record *record, void *out)
 {
@@ -95,6 +105,7 @@ static void make(const void *maker, const ShadingPoint *p, uint32_t key, unsigne
     if (cache->basis == SHEEN_BASIS_HSH) return;
     for (size_t i = 0; i < 3; ++i) {
         float *part = light + i * cache->stride;
+        mirror_below(cache->order, parts[i]);
         sheen_rotation_to_world(cache->rotation, &h->frame, 3, part, part);
     }
 }
