@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes and reads small OpenEXR files of three half floats a pixel, compressed by zlib, with text attributes.
+"""Writes and reads small OpenEXR files of three half floats a pixel, compressed by zlib, with text attributes, and reads
+the layers of those that the program writes.
 
 Half floats have 11 significant bits; `write` can keep fewer, since bits below the noise of a picture only cost room.
 The layout is that of the OpenEXR file format: scan lines in blocks of 16, the bytes of each block separated into even
@@ -16,7 +17,8 @@ except ImportError:  # enter.enter() goes on elsewhere before any function here 
 
 LINES = 16  # of a block
 MAGIC = struct.pack("<II", 20000630, 2)
-HALF, ZIP = 1, 3
+LONG_NAMES = 0x400
+HALF, FLOAT, ZIP = 1, 2, 3
 CHANNELS = "BGR"  # in the file, by the alphabet
 
 
@@ -80,28 +82,59 @@ def write(path, picture, texts=None, bits=10):
         file.write(start + b"".join(offsets) + b"".join(body))
 
 
-def read(path):
-    """A file of `write`: the picture as float64, and the text attributes."""
+def channel_list(value):
+    """(name, type) of each channel."""
+    found = []
+    while len(value) > 1:
+        name, rest = value.split(b"\0", 1)
+        found.append((name.decode(), struct.unpack_from("<I", rest)[0]))
+        value = rest[16:]
+    return found
+
+
+def planes(path):
+    """All channels of a file compressed by zlib whose pixels are all of one type: an array [row][column][channel] of
+    float64, their names, and the text attributes."""
     with open(path, "rb") as file:
         data = file.read()
-    if data[:8] != MAGIC:
+    if data[:4] != MAGIC[:4] or struct.unpack_from("<I", data, 4)[0] & ~LONG_NAMES != 2:
         raise ValueError(f"{path}: not an OpenEXR file of one part in scan lines")
     at, attributes = 8, {}
     while data[at]:
-        name, kind, rest = data[at:].split(b"\0", 2)
+        name, kind, _ = data[at:at + 512].split(b"\0", 2)
         at += len(name) + len(kind) + 2
         size, = struct.unpack_from("<I", data, at)
         attributes[name.decode()] = (kind.decode(), data[at + 4:at + 4 + size])
         at += 4 + size
     x0, y0, x1, y1 = struct.unpack("<4i", attributes["dataWindow"][1])
     width, height = x1 - x0 + 1, y1 - y0 + 1
-    if attributes["compression"][1] != bytes([ZIP]) or attributes["channels"][1].count(struct.pack("<I", HALF)) < 3:
-        raise ValueError(f"{path}: not of half floats compressed in blocks")
-    lines = np.empty((height, 3, width), "<u2")
+    channels = channel_list(attributes["channels"][1])
+    kinds = {kind for _, kind in channels}
+    if attributes["compression"][1] != bytes([ZIP]) or len(kinds) != 1 or not kinds <= {HALF, FLOAT}:
+        raise ValueError(f"{path}: not of floats of one size compressed in blocks")
+    lines = np.empty((height, len(channels), width), "<f2" if kinds == {HALF} else "<f4")
     count = -(-height // LINES)
     for offset in struct.unpack_from(f"<{count}Q", data, at + 1):
         y, size = struct.unpack_from("<iI", data, offset)
         block = lines[y - y0:y - y0 + LINES]
-        block[:] = np.frombuffer(inflate(data[offset + 8:offset + 8 + size], block.nbytes), "<u2").reshape(block.shape)
+        block[:] = np.frombuffer(inflate(data[offset + 8:offset + 8 + size], block.nbytes),
+                                 lines.dtype).reshape(block.shape)
     texts = {name: value.decode() for name, (kind, value) in attributes.items() if kind == "string"}
-    return lines.view("<f2").swapaxes(1, 2)[:, :, ::-1].astype(np.float64), texts
+    return lines.swapaxes(1, 2).astype(np.float64), [name for name, _ in channels], texts
+
+
+def read(path):
+    """A file of `write`: the picture as float64, and the text attributes."""
+    pixels, names, texts = planes(path)
+    return pixels[:, :, [names.index(c) for c in "RGB"]], texts
+
+
+def layers(path):
+    """A file of sheen: by name its layers, the colour as "", each [row][column][channel] in the file's order of RGB, XYZ
+    and so on."""
+    pixels, names, _ = planes(path)
+    found = {}
+    for index, name in enumerate(names):
+        layer, _, channel = name.rpartition(".")
+        found.setdefault(layer, []).append(("RGBXYZUV".find(channel), index))
+    return {layer: pixels[:, :, [index for _, index in sorted(parts)]] for layer, parts in found.items()}
