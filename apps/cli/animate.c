@@ -21,7 +21,7 @@ typedef struct Animation {
     SheenCamera *cameras;  // [n], of the frames
     size_t n;              // from values.first to values.last
     SheenRenderSettings settings;
-    PictureNotes notes;
+    FrameOutputs outputs;
     Manifest manifest;
     FrameStats *frames; // [n_done] of those that are whole
     size_t n_done;
@@ -90,11 +90,12 @@ static int prepare(Animation *a)
     const char *camera_path = v->camera_path;
     // Pictures tell how they were made, wherever that was.
     if (camera_path) v->camera_path = path_last_part(camera_path);
-    if (!picture_notes_make(run, &a->notes)) return cli_error("%s: out of memory", run->scene_path);
     code = manifest_make(run, camera_path, v->first, &a->manifest);
     if (code == CLI_DONE && v->resume) code = manifest_resume(run->command, &v->render.outputs, v->last, &a->manifest);
     if (code == CLI_DONE) code = run_start_threads(run);
-    return code;
+    if (code != CLI_DONE) return code;
+    SheenStatus status = frame_outputs_open(run, v->fps, &a->outputs);
+    return report_exit_code(&run->report, status, v->render.outputs.items[0]);
 }
 
 /** Renders and writes a frame. @return the exit code */
@@ -114,7 +115,7 @@ static int render_frame(Animation *a, size_t i)
     int code = report_exit_code(&run->report, status, run->scene_path);
     double rendered = sheen_clock_seconds();
     if (code == CLI_DONE) {
-        status = frame_outputs_write(run, number, film, &a->notes);
+        status = frame_outputs_write(&a->outputs, number, film);
         code = report_exit_code(&run->report, status, a->values.render.outputs.items[0]);
     }
     sheen_film_destroy(&film);
@@ -131,8 +132,12 @@ static int render_frame(Animation *a, size_t i)
 
 static int interrupted(Animation *a)
 {
-    char what[96];
-    snprintf(what, sizeof what, "%zu frames of %zu are whole", (size_t)(a->manifest.next - a->values.first), a->n);
+    const TextList *outputs = &a->values.render.outputs;
+    size_t patterns = frame_outputs_patterns(outputs), done = (size_t)(a->manifest.next - a->values.first);
+    char what[96] = "nothing was written";
+    if (patterns > 0)
+        snprintf(what, sizeof what, "%zu frames of %zu are whole%s", done, a->n,
+                 patterns < outputs->n ? ", the video was dropped" : "");
     return run_tell_interrupted(&a->run, what);
 }
 
@@ -148,6 +153,8 @@ static int render_frames(Animation *a)
         code = render_frame(a, i);
     }
     progress_show_clear(&a->run.show);
+    if (code == CLI_DONE)
+        code = report_exit_code(&a->run.report, frame_outputs_finish(&a->outputs), a->values.render.outputs.items[0]);
     run_warn_nonfinite(&a->run, a->stats.render.nonfinite_samples);
     return code == CLI_DONE && a->run.report.failed ? CLI_WORLD : code;
 }
@@ -178,7 +185,7 @@ static void animation_free(Animation *a)
 {
     free(a->cameras);
     free(a->frames);
-    picture_notes_free(&a->notes);
+    frame_outputs_close(&a->outputs);
     manifest_free(&a->manifest);
     sheen_camera_path_destroy(&a->path);
     run_end(&a->run);
@@ -215,14 +222,16 @@ static int run_animate(int argc, char **argv)
 
 const Command command_animate = {
     .name = "animate",
-    .operands = "SCENE -o FRAMES",
+    .operands = "SCENE -o FRAMES|VIDEO",
     .summary = "a range of frames of a scene file",
     .description =
         "Renders a walkthrough: the scene stands still, and the camera moves along a path. Each frame is the picture "
         "that sheen render makes of the scene with the camera of that frame.\n"
-        "Frames are written as they are finished. The same scene, options and seed give the same files, bit by bit, at "
+        "Frames are written as they are finished, a video when all are. The same scene, options and seed give the same "
+        "files, bit by bit, at "
         "any number of threads, and after --resume.\n"
-        "Ctrl-C drops the frame in work and keeps those that are finished; twice stops at once.",
+        "Ctrl-C drops the frame in work and keeps those that are finished, but not the half of a video; twice stops at "
+        "once.",
     .options = animate_tables,
     .example = "sheen animate scenes/glossy-box.xml --camera-path walk.json -o walk.####.png",
     .run = run_animate,

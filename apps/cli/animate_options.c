@@ -19,11 +19,13 @@ static const Option output_options[] = {
      .letter = 'o',
      .name = "output",
      .argument = "FILES",
-     .meaning = "The frames to write, as a name with # for the digits of their number, which may have more: "
-                "walk/box.####.exr. The ending tells the format, as of sheen render. The folder must be there. May be "
-                "given several times. A file appears whole or not at all.",
+     .meaning =
+         "The frames to write, as a name with # for the digits of their number, which may have more: "
+         "walk/box.####.exr. The ending tells the format, as of sheen render. Or a video: .mp4 and .mkv (H.264), "
+         ".webm (VP9), of 8 bit in the colours of sRGB. The folder must be there. May be given several times. A "
+         "file appears whole or not at all.",
      .standard = "none; at least one is required",
-     .example = "-o walk/box.####.exr -o walk/box.####.png",
+     .example = "-o walk/box.####.exr -o walk.mp4",
      .offset = offsetof(AnimateValues, render.outputs)},
     {.kind = OPTION_TEXT,
      .name = "frames",
@@ -32,6 +34,15 @@ static const Option output_options[] = {
      .standard = "from the first to the last key of --camera-path, else 0",
      .example = "--frames 0-59",
      .offset = offsetof(AnimateValues, frames)},
+    {.kind = OPTION_NUMBER,
+     .name = "fps",
+     .argument = "N",
+     .meaning = "Frames a second of videos.",
+     .standard = "30",
+     .example = "--fps 25",
+     .min = 0.1,
+     .max = 1000.0,
+     .offset = offsetof(AnimateValues, fps)},
     {.kind = OPTION_TEXT,
      .name = "camera-path",
      .argument = "FILE",
@@ -55,18 +66,22 @@ static const Option output_options[] = {
      .offset = offsetof(AnimateValues, temporal)},
     {.kind = OPTION_FLAG,
      .name = "resume",
-     .meaning = "Go on after the last whole frame of an earlier run with the same options. What that was is in a file "
-                "beside the frames, walk/box.####.exr.json. If any option, the scene, or the camera path differ, "
-                "nothing is done and the difference is told. Without an earlier run the first frame is the first.",
+     .meaning =
+         "Go on after the last whole frame of an earlier run with the same options. What that was is in a file "
+         "beside the frames, walk/box.####.exr.json. If any option, the scene, or the camera path differ, "
+         "nothing is done and the difference is told. Without an earlier run the first frame is the first. A video "
+         "cannot be gone on with.",
      .example = "--resume",
      .offset = offsetof(AnimateValues, resume)},
     {0},
 };
 
 static const Option later_options[] = {
-    {.kind = OPTION_LATER, .name = "fps"},          {.kind = OPTION_LATER, .name = "temporal-accuracy"},
-    {.kind = OPTION_LATER, .name = "max-lifespan"}, {.kind = OPTION_LATER, .name = "static-records"},
-    {.kind = OPTION_LATER, .name = "prefill"},      {0},
+    {.kind = OPTION_LATER, .name = "temporal-accuracy"},
+    {.kind = OPTION_LATER, .name = "max-lifespan"},
+    {.kind = OPTION_LATER, .name = "static-records"},
+    {.kind = OPTION_LATER, .name = "prefill"},
+    {0},
 };
 
 const OptionTable animate_tables[] = {
@@ -78,7 +93,7 @@ const OptionTable animate_tables[] = {
 
 AnimateValues animate_values_default(void)
 {
-    return (AnimateValues){.render = render_values_default(), .temporal = TEMPORAL_NONE};
+    return (AnimateValues){.render = render_values_default(), .fps = 30.0, .temporal = TEMPORAL_NONE};
 }
 
 /** Reads digits up to `end`. @return false when there are none, or too many */
@@ -104,6 +119,10 @@ static bool read_frames(const char *text, long *first, long *last)
 bool animate_values_check(const Command *command, AnimateValues *values)
 {
     if (!frame_outputs_check_names(command, &values->render.outputs)) return false;
+    if (values->resume && frame_outputs_patterns(&values->render.outputs) < values->render.outputs.n) {
+        cli_usage_error(command, "--resume: a video cannot be gone on with; write frames");
+        return false;
+    }
     if (values->frames && !read_frames(values->frames, &values->first, &values->last)) {
         cli_usage_error(command, "--frames: '%s' is not A-B with frames from 0 to %d, the first not after the last",
                         values->frames, FRAME_MAX);

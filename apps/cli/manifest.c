@@ -71,6 +71,7 @@ bool manifest_write(const Manifest *manifest, const TextList *outputs)
     bool ok = text != NULL;
     if (!ok) cli_error("%s: out of memory", outputs->items[0]);
     for (size_t i = 0; ok && i < outputs->n; ++i) {
+        if (video_has_ending(outputs->items[i])) continue;
         char *path = path_of(outputs->items[i]);
         ok = path && output_write_text(path, text);
         free(path);

@@ -21,12 +21,12 @@ typedef struct Manifest {
 int manifest_make(const Run *run, const char *camera_path, long first, Manifest *out);
 void manifest_free(Manifest *manifest);
 
-/** Writes it beside the frames of every output. @return false after one line on stderr */
+/** Writes it beside the frames of every pattern. @return false after one line on stderr */
 bool manifest_write(const Manifest *manifest, const TextList *outputs);
 
 /**
- * Reads what an earlier run left and finds where this one goes on: manifest->first and next, which stay where there was
- * no earlier run.
+ * Reads what an earlier run with the same patterns left and finds where this one goes on: manifest->first and next,
+ * which stay where there was no earlier run.
  * @return the exit code: not CLI_DONE after one line that tells what differs
  */
 int manifest_resume(const Command *command, const TextList *outputs, long last, Manifest *manifest);

@@ -22,10 +22,12 @@ refused --output "${A[@]}" -o a.#.exr # a.100.exr would be both
 for frames in '' - 1- -1 2-1 a 1-b 1-2-3 1.5 +1 ' 1' 1000000000 99999999999999999999; do
     refused --frames "${A[@]}" "--frames=$frames"
 done
-for option in fps temporal-accuracy max-lifespan time-limit; do
+for option in temporal-accuracy max-lifespan time-limit; do
     expect 2 "${A[@]}" "--$option" 1
     says "^sheen: --$option: "
 done
+for fps in 0 nan 1001 x; do refused --fps "${A[@]}" --fps $fps; done
+refused --resume "${A[@]}" -o a.mp4 --resume
 for value in extrapolated interpolated nosuch; do refused --temporal "${A[@]}" --temporal $value; done
 expect 1 "${A[@]}" --camera-path nosuch.json; says '^sheen: nosuch\.json: '
 echo '{"keys": [{"frame": 1}]}' >bad.json
@@ -66,6 +68,25 @@ mkdir alone
 expect 0 animate "$SCENE" -o alone/a.##.exr "${SMALL[@]}" --camera-path walk.json --frames 3 --threads 3
 cmp a.03.exr alone/a.03.exr || fail "frame 3 alone is another"
 n_checks=$((n_checks + 6))
+
+# Videos, where there is a writer of them: the same bits at any number of threads.
+if "$SHEEN" animate "$SCENE" -o v.mp4 "${SMALL[@]}" --quiet 2>err; then
+    for ending in mp4 mkv webm; do
+        for threads in 1 3; do
+            expect 0 animate "$SCENE" -o v$threads.$ending --camera-path walk.json "${SMALL[@]}" --quiet --threads $threads
+            silent
+        done
+        cmp v1.$ending v3.$ending || fail "v.$ending differs by threads"
+    done
+    refused --output animate "$SCENE" -o v.mp4 -o v.mp4
+    echo old >v.mp4
+    (ulimit -f 1; expect 1 animate "$SCENE" -o v.mp4 "${SMALL[@]}" --size 200x200; says '^sheen: v\.mp4: ') || exit 1
+    [ "$(cat v.mp4)" = old ] || fail "v.mp4 was changed by a write that failed"
+    [ "$(echo v.*)" = v.mp4 ] || fail "a failed write left something: $(echo v.*)"
+else
+    says "^sheen: --output: 'v.mp4': this program was built without a writer of videos"
+    echo "skipped: videos"
+fi
 
 # Ctrl-C keeps what is whole, and nothing else.
 mkdir c d
