@@ -2,6 +2,7 @@
 // `sheen animate`: a range of frames of a scene file.
 #include "animate_options.h"
 #include "cli.h"
+#include "frame_maker.h"
 #include "frame_name.h"
 #include "frame_outputs.h"
 #include "manifest.h"
@@ -17,14 +18,13 @@
 typedef struct Animation {
     Run run;
     AnimateValues values;
+    FrameRange range;      // that the values point to
     SheenCameraPath *path; // NULL: the scene's camera stands still
-    SheenCamera *cameras;  // [n], of the frames
-    size_t n;              // from values.first to values.last
-    SheenRenderSettings settings;
+    FrameMaker maker;
     FrameOutputs outputs;
     Manifest manifest;
-    FrameStats *frames; // [n_done] of those that are whole
-    size_t n_done;
+    size_t n;           // frames from values.first to values.last
+    FrameStats *frames; // [stats.n_frames] of those that are whole
     RunStats stats;
 } Animation;
 
@@ -54,79 +54,83 @@ static int read_path(Animation *a, const SheenCamera *camera)
     return CLI_DONE;
 }
 
-/** Finds the cameras of all frames, so that a bad one is told before the work. @return the exit code */
-static int place_cameras(Animation *a, const SheenCamera *camera)
+/** Looks whether all frames have a camera, so that a bad one is told before the work. @return the exit code */
+static int check_cameras(const Animation *a, long first, long last)
 {
-    const AnimateValues *v = &a->values;
-    a->n = (size_t)(v->last - v->first) + 1;
-    a->cameras = malloc(a->n * sizeof *a->cameras);
-    a->frames = malloc(a->n * sizeof *a->frames);
-    if (!a->cameras || !a->frames) return cli_error("--frames: %zu are too many for the memory", a->n);
-    for (size_t i = 0; i < a->n; ++i) {
-        a->cameras[i] = *camera;
-        if (!a->path) continue;
-        SheenCameraFault fault = sheen_camera_path_at(a->path, (double)(v->first + (long)i), &a->cameras[i]);
+    for (long frame = first; frame <= last; ++frame) {
+        SheenCamera camera;
+        SheenCameraFault fault = frame_maker_camera(&a->maker, frame, &camera);
         if (fault)
-            return cli_error("%s: at frame %ld the camera %s", v->camera_path, v->first + (long)i,
+            return cli_error("%s: at frame %ld the camera %s", a->values.camera_path, frame,
                              sheen_camera_fault_text(fault));
     }
     return CLI_DONE;
 }
 
-/** All that can go wrong before the first frame. @return the exit code */
-static int prepare(Animation *a)
+/** Decides which frames there are and how they are made. @return the exit code */
+static int plan(Animation *a)
 {
     Run *run = &a->run;
     AnimateValues *v = &a->values;
     uint32_t index;
     if (!run_find_camera(run, &index)) return CLI_USAGE;
     const SheenCamera *camera = &run->scene->cameras[index];
-    a->settings = render_values_settings(&v->render, camera, index);
+    SheenRenderSettings settings = render_values_settings(&v->render, camera, index);
     int code = read_path(a, camera);
-    if (code == CLI_DONE) code = place_cameras(a, camera);
     if (code != CLI_DONE) return code;
-    if (!frame_outputs_check_files(&v->render.outputs, v->first, v->last)) return CLI_WORLD;
+    animate_values_resolve(v, &a->range);
+    a->maker = (FrameMaker){
+        .run = run, .values = v, .path = a->path, .camera = camera, .settings = settings, .stats = &a->stats};
+    code = check_cameras(a, v->first, v->last);
+    if (code == CLI_DONE && v->static_records == SWITCH_ON) code = check_cameras(a, v->records_first, v->records_last);
+    if (code != CLI_DONE) return code;
+    a->n = (size_t)(v->last - v->first) + 1;
+    a->frames = malloc(a->n * sizeof *a->frames);
+    return a->frames ? CLI_DONE : cli_error("--frames: %zu are too many for the memory", a->n);
+}
+
+/** All that can go wrong before the work. @return the exit code */
+static int prepare(Animation *a)
+{
+    Run *run = &a->run;
+    AnimateValues *v = &a->values;
+    const TextList *outputs = &v->render.outputs;
+    int code = plan(a);
+    if (code != CLI_DONE) return code;
+    if (!frame_outputs_check_files(outputs, v->first, v->last)) return CLI_WORLD;
 
     const char *camera_path = v->camera_path;
     // Pictures tell how they were made, wherever that was.
     if (camera_path) v->camera_path = path_last_part(camera_path);
-    code = manifest_make(run, camera_path, v->first, &a->manifest);
-    if (code == CLI_DONE && v->resume) code = manifest_resume(run->command, &v->render.outputs, v->last, &a->manifest);
+    code = manifest_make(run, camera_path, a->maker.camera, v->first, &a->manifest);
+    if (code == CLI_DONE && v->resume) code = manifest_resume(run->command, outputs, v->last, &a->manifest);
     if (code == CLI_DONE) code = run_start_threads(run);
     if (code != CLI_DONE) return code;
     SheenStatus status = frame_outputs_open(run, v->fps, &a->outputs);
-    return report_exit_code(&run->report, status, v->render.outputs.items[0]);
+    return report_exit_code(&run->report, status, outputs->items[0]);
+}
+
+static int exit_code(Animation *a, SheenStatus status, const char *what)
+{
+    return status == SHEEN_ERR_CANCELLED ? CLI_INTERRUPTED : report_exit_code(&a->run.report, status, what);
 }
 
 /** Renders and writes a frame. @return the exit code */
-static int render_frame(Animation *a, size_t i)
+static int render_frame(Animation *a, long number)
 {
-    Run *run = &a->run;
-    long number = a->values.first + (long)i;
+    const TextList *outputs = &a->values.render.outputs;
     double start = sheen_clock_seconds();
     SheenFilm *film = NULL;
-    SheenStats stats;
-    SheenRenderTimes times;
-    a->settings.view = &a->cameras[i];
-    SheenProgress progress = progress_show_sink(&run->show);
-    SheenStatus status = sheen_render(run->scene, &a->settings, run->pool, run->interrupted, &progress, &run->log,
-                                      &film, &stats, &times);
-    if (status == SHEEN_ERR_CANCELLED) return CLI_INTERRUPTED;
-    int code = report_exit_code(&run->report, status, run->scene_path);
+    FrameStats *frame = &a->frames[a->stats.n_frames];
+    int code = exit_code(a, frame_maker_render(&a->maker, number, &film, frame), a->run.scene_path);
     double rendered = sheen_clock_seconds();
-    if (code == CLI_DONE) {
-        status = frame_outputs_write(&a->outputs, number, film);
-        code = report_exit_code(&run->report, status, a->values.render.outputs.items[0]);
-    }
+    if (code == CLI_DONE) code = exit_code(a, frame_outputs_write(&a->outputs, number, film), outputs->items[0]);
     sheen_film_destroy(&film);
     if (code != CLI_DONE) return code;
     a->manifest.next = number + 1;
-    if (!manifest_write(&a->manifest, &a->values.render.outputs)) return CLI_WORLD;
-    double end = sheen_clock_seconds();
-    a->stats.build += times.build;
-    a->stats.write += end - rendered;
-    stats_sum(&a->stats.render, a->n_done, &stats);
-    a->frames[a->n_done++] = frame_stats(number, end - start, &stats);
+    if (!manifest_write(&a->manifest, outputs)) return CLI_WORLD;
+    frame->time = sheen_clock_seconds() - start;
+    a->stats.write += start + frame->time - rendered;
     return CLI_DONE;
 }
 
@@ -143,18 +147,17 @@ static int interrupted(Animation *a)
 
 static int render_frames(Animation *a)
 {
-    size_t begin = (size_t)(a->manifest.next - a->values.first);
+    const AnimateValues *v = &a->values;
+    long begin = a->manifest.next;
     // So that a later run does not take what lies there from before for whole.
-    if (begin < a->n && !manifest_write(&a->manifest, &a->values.render.outputs)) return CLI_WORLD;
-    int code = CLI_DONE;
-    for (size_t i = begin; i < a->n && code == CLI_DONE; ++i) {
-        if (run_is_interrupted(&a->run)) return CLI_INTERRUPTED;
-        progress_show_part(&a->run.show, "frame", i - begin, a->n - begin);
-        code = render_frame(a, i);
+    if (begin <= v->last && !manifest_write(&a->manifest, &v->render.outputs)) return CLI_WORLD;
+    int code = begin <= v->last ? exit_code(a, frame_maker_begin(&a->maker, begin), a->run.scene_path) : CLI_DONE;
+    for (long frame = begin; frame <= v->last && code == CLI_DONE; ++frame) {
+        progress_show_part(&a->run.show, "frame", (size_t)(frame - begin), (size_t)(v->last - begin) + 1);
+        code = run_is_interrupted(&a->run) ? CLI_INTERRUPTED : render_frame(a, frame);
     }
     progress_show_clear(&a->run.show);
-    if (code == CLI_DONE)
-        code = report_exit_code(&a->run.report, frame_outputs_finish(&a->outputs), a->values.render.outputs.items[0]);
+    if (code == CLI_DONE) code = exit_code(a, frame_outputs_finish(&a->outputs), v->render.outputs.items[0]);
     run_warn_nonfinite(&a->run, a->stats.render.nonfinite_samples);
     return code == CLI_DONE && a->run.report.failed ? CLI_WORLD : code;
 }
@@ -163,15 +166,14 @@ static void print_summary(const Animation *a)
 {
     const RenderValues *v = &a->values.render;
     if (a->run.report.quiet || v->progress == PROGRESS_NONE) return;
-    fprintf(stderr, "sheen: %s: %zu frames of %u x %u, %s, %.2f s\n", v->outputs.items[0], a->n_done, v->size.width,
-            v->size.height, render_integrator_name(v), a->stats.total);
+    fprintf(stderr, "sheen: %s: %zu frames of %u x %u, %s, %.2f s\n", v->outputs.items[0], a->stats.n_frames,
+            v->size.width, v->size.height, render_integrator_name(v), a->stats.total);
 }
 
 /** Statistics and summary, of an interrupted run too. @return the exit code */
 static int report(Animation *a, int code)
 {
     a->stats.frames = a->frames;
-    a->stats.n_frames = a->n_done;
     a->stats.load = a->run.load;
     a->stats.total = sheen_clock_seconds() - a->run.start;
     if (code == CLI_INTERRUPTED) interrupted(a);
@@ -183,7 +185,7 @@ static int report(Animation *a, int code)
 
 static void animation_free(Animation *a)
 {
-    free(a->cameras);
+    frame_maker_end(&a->maker);
     free(a->frames);
     frame_outputs_close(&a->outputs);
     manifest_free(&a->manifest);
@@ -225,8 +227,10 @@ const Command command_animate = {
     .operands = "SCENE -o FRAMES|VIDEO",
     .summary = "a range of frames of a scene file",
     .description =
-        "Renders a walkthrough: the scene stands still, and the camera moves along a path. Each frame is the picture "
-        "that sheen render makes of the scene with the camera of that frame.\n"
+        "Renders a walkthrough: the scene stands still, and the camera moves along a path. The records of the cache "
+        "serve "
+        "all frames: they are placed for the whole walkthrough first, then each frame is shaded from them, so that its "
+        "indirect light does not change where the camera does not see anew.\n"
         "Frames are written as they are finished, a video when all are. The same scene, options and seed give the same "
         "files, bit by bit, at "
         "any number of threads, and after --resume.\n"

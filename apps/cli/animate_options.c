@@ -4,6 +4,7 @@
 #include "frame_name.h"
 #include "frame_outputs.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -64,6 +65,38 @@ static const Option output_options[] = {
      .choices = temporals,
      .recorded = true,
      .offset = offsetof(AnimateValues, temporal)},
+    {.kind = OPTION_SWITCH,
+     .name = "static-records",
+     .argument = "[on|off]",
+     .meaning =
+         "Keep every record of the cache for the whole walkthrough: for scenes that stand still while the camera "
+         "moves. off: a new cache for each frame.",
+     .standard = "on: nothing moves; off with --integrator path, which has no records",
+     .example = "--static-records off",
+     .choices = cli_on_off,
+     .recorded = true,
+     .offset = offsetof(AnimateValues, static_records)},
+    {.kind = OPTION_SWITCH,
+     .name = "prefill",
+     .argument = "[on|off]",
+     .meaning =
+         "Fill the cache for all frames before the first is shaded, so that nothing pops, and so that each frame "
+         "is the same whichever others are rendered. off: each frame fills what it sees, and later ones see "
+         "what it left.",
+     .standard = "on where records are kept",
+     .example = "--prefill off",
+     .choices = cli_on_off,
+     .recorded = true,
+     .offset = offsetof(AnimateValues, prefill)},
+    {.kind = OPTION_TEXT,
+     .name = "prefill-frames",
+     .argument = "A-B",
+     .meaning = "Fill the cache for these frames, not those of --frames: parts of a walkthrough that are rendered by "
+                "several runs then are the same as those of one.",
+     .standard = "those of --frames",
+     .example = "--frames 30-59 --prefill-frames 0-59",
+     .recorded = true,
+     .offset = offsetof(AnimateValues, prefill_frames)},
     {.kind = OPTION_FLAG,
      .name = "resume",
      .meaning =
@@ -79,8 +112,7 @@ static const Option output_options[] = {
 static const Option later_options[] = {
     {.kind = OPTION_LATER, .name = "temporal-accuracy"},
     {.kind = OPTION_LATER, .name = "max-lifespan"},
-    {.kind = OPTION_LATER, .name = "static-records"},
-    {.kind = OPTION_LATER, .name = "prefill"},
+
     {0},
 };
 
@@ -93,7 +125,11 @@ const OptionTable animate_tables[] = {
 
 AnimateValues animate_values_default(void)
 {
-    return (AnimateValues){.render = render_values_default(), .fps = 30.0, .temporal = TEMPORAL_NONE};
+    return (AnimateValues){.render = render_values_default(),
+                           .fps = 30.0,
+                           .temporal = TEMPORAL_NONE,
+                           .static_records = SWITCH_UNSET,
+                           .prefill = SWITCH_UNSET};
 }
 
 /** Reads digits up to `end`. @return false when there are none, or too many */
@@ -116,17 +152,51 @@ static bool read_frames(const char *text, long *first, long *last)
     return !text[n] || (read_frame(text + n + 1, strlen(text + n + 1), last) && *first <= *last);
 }
 
+// Options that only make sense with each other.
+static bool check_records(const Command *command, const AnimateValues *v)
+{
+    bool path = v->render.integrator == SHEEN_INTEGRATOR_PATH;
+    if (path && (v->static_records == SWITCH_ON || v->prefill == SWITCH_ON)) {
+        cli_usage_error(command, "--%s: the path integrator has no records",
+                        v->static_records == SWITCH_ON ? "static-records" : "prefill");
+    } else if (v->prefill == SWITCH_ON && v->static_records == SWITCH_OFF) {
+        cli_usage_error(command, "--prefill: goes with --static-records on only");
+    } else if (v->prefill_frames && (path || v->prefill == SWITCH_OFF || v->static_records == SWITCH_OFF)) {
+        cli_usage_error(command, "--prefill-frames: nothing is filled before the frames here");
+    } else {
+        return true;
+    }
+    return false;
+}
+
+static bool check_range(const Command *command, const char *option, const char *text, long *first, long *last)
+{
+    if (!text || read_frames(text, first, last)) return true;
+    cli_usage_error(command, "--%s: '%s' is not A-B with frames from 0 to %d, the first not after the last", option,
+                    text, FRAME_MAX);
+    return false;
+}
+
 bool animate_values_check(const Command *command, AnimateValues *values)
 {
-    if (!frame_outputs_check_names(command, &values->render.outputs)) return false;
-    if (values->resume && frame_outputs_patterns(&values->render.outputs) < values->render.outputs.n) {
+    AnimateValues *v = values;
+    if (!frame_outputs_check_names(command, &v->render.outputs)) return false;
+    if (v->resume && frame_outputs_patterns(&v->render.outputs) < v->render.outputs.n) {
         cli_usage_error(command, "--resume: a video cannot be gone on with; write frames");
         return false;
     }
-    if (values->frames && !read_frames(values->frames, &values->first, &values->last)) {
-        cli_usage_error(command, "--frames: '%s' is not A-B with frames from 0 to %d, the first not after the last",
-                        values->frames, FRAME_MAX);
-        return false;
-    }
-    return render_values_check(command, &values->render);
+    return check_range(command, "frames", v->frames, &v->first, &v->last) &&
+           check_range(command, "prefill-frames", v->prefill_frames, &v->records_first, &v->records_last) &&
+           check_records(command, v) && render_values_check(command, &v->render);
+}
+
+void animate_values_resolve(AnimateValues *v, FrameRange *range)
+{
+    bool has_records = v->render.integrator != SHEEN_INTEGRATOR_PATH;
+    if (v->static_records == SWITCH_UNSET) v->static_records = has_records ? SWITCH_ON : SWITCH_OFF;
+    if (v->prefill == SWITCH_UNSET) v->prefill = v->static_records;
+    if (v->static_records == SWITCH_OFF) return;
+    if (!v->prefill_frames) v->records_first = v->first, v->records_last = v->last;
+    snprintf(range->text, sizeof range->text, "%ld-%ld", v->records_first, v->records_last);
+    v->prefill_frames = range->text;
 }

@@ -18,6 +18,7 @@ typedef enum OptionKind {
     OPTION_COUNT,  // whole number in [min, max]; uint32_t
     OPTION_NUMBER, // decimal number in [min, max]; double
     OPTION_CHOICE, // one of `choices`; int becomes its value
+    OPTION_SWITCH, // "on", "off", or nothing for "on"; int becomes a Switch
     OPTION_SET,    // names of `choices` with commas between; unsigned gains the bits 1 << value
     OPTION_SIZE,   // WxH, each side in [min, max]; PictureSize
     OPTION_TEXT,   // any words but none; const char *
@@ -31,6 +32,10 @@ typedef struct Choice {
     int value;
 } Choice;
 enum { CHOICE_LATER = -1 };
+
+/** Values of an OPTION_SWITCH; unset is what a command puts there for a default that depends. */
+typedef enum Switch { SWITCH_OFF, SWITCH_ON, SWITCH_UNSET } Switch;
+extern const Choice cli_on_off[];
 
 typedef struct PictureSize {
     uint32_t width, height;

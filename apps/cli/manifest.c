@@ -8,40 +8,64 @@
 #include "output.h"
 
 #include "image/whole_file.h"
+#include "scene/scene_hash.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-/** @return the content of a file as a number in text (FNV-1a), a new reference; NULL after a message. */
-static json_t *content_json(const Run *run, const char *path)
+/** FNV-1a. */
+static uint64_t hash_bytes(uint64_t hash, const void *data, size_t size)
 {
-    uint8_t *data;
-    size_t size;
-    if (sheen_file_read(path, &run->log, &data, &size) != SHEEN_OK) return NULL;
-    uint64_t hash = 0xcbf29ce484222325u;
-    for (size_t i = 0; i < size; ++i) hash = (hash ^ data[i]) * 0x100000001b3u;
-    free(data);
+    const uint8_t *bytes = data;
+    for (size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 0x100000001b3u;
+    return hash;
+}
+static const uint64_t hash_begin = 0xcbf29ce484222325u;
+
+static json_t *hash_json(uint64_t hash)
+{
     char text[32];
     snprintf(text, sizeof text, "%016llx", (unsigned long long)hash);
     return json_string(text);
 }
 
-int manifest_make(const Run *run, const char *camera_path, long first, Manifest *out)
+/** @return the content of a file as a hash, a new reference; NULL after a message or when out of memory. */
+static json_t *content_json(const Run *run, const char *path)
+{
+    uint8_t *data;
+    size_t size;
+    if (sheen_file_read(path, &run->log, &data, &size) != SHEEN_OK) return NULL;
+    json_t *hash = hash_json(hash_bytes(hash_begin, data, size));
+    free(data);
+    return hash;
+}
+
+/** What of a camera the options do not tell. */
+static json_t *camera_json(const SheenCamera *c)
+{
+    const float numbers[] = {c->fov_x,         c->aperture,      c->focus,    c->orthographic ? 1.0f : 0.0f,
+                             c->cut_lo.x,      c->cut_lo.y,      c->cut_hi.x, c->cut_hi.y,
+                             c->filter.radius, c->filter.stddev, c->filter.b, c->filter.c};
+    uint64_t hash = hash_bytes(hash_begin, &c->to_world, sizeof c->to_world);
+    return hash_json(hash_bytes(hash, numbers, sizeof numbers));
+}
+
+int manifest_make(const Run *run, const char *camera_path, const SheenCamera *camera, long first, Manifest *out)
 {
     *out = (Manifest){.first = first, .next = first};
-    json_t *scene = content_json(run, run->scene_path);
+    const OptionTable *tables = run->command->options;
     json_t *path = camera_path ? content_json(run, camera_path) : json_null();
-    json_t *options = options_json(run->command->options, run->all_values);
+    if (!path) return run->report.failed ? CLI_WORLD : cli_error("%s: out of memory", camera_path);
+    json_t *options = options_json(tables, run->all_values);
     json_object_del(options, "camera-path"); // its content counts
     // Files depend on these too, though the light in them does not.
-    json_object_set_new(options, "aov", options_json_value(run->command->options, run->all_values, "aov"));
-    json_object_set_new(options, "exposure", options_json_value(run->command->options, run->all_values, "exposure"));
-    if (scene && path)
-        out->made_with = json_pack("{s:s, s:o, s:o, s:o}", "version", SHEEN_VERSION, "scene", scene, "camera path",
-                                   path, "options", options);
-    if (out->made_with) return CLI_DONE;
-    return run->report.failed ? CLI_WORLD : cli_error("%s: out of memory", run->scene_path);
+    json_object_set_new(options, "aov", options_json_value(tables, run->all_values, "aov"));
+    json_object_set_new(options, "exposure", options_json_value(tables, run->all_values, "exposure"));
+    out->made_with = json_pack("{s:s, s:o, s:o, s:o, s:o}", "version", SHEEN_VERSION, "scene",
+                               hash_json(sheen_scene_hash(run->scene)), "camera", camera_json(camera), "camera path",
+                               path, "options", options);
+    return out->made_with ? CLI_DONE : cli_error("%s: out of memory", run->scene_path);
 }
 
 void manifest_free(Manifest *manifest)

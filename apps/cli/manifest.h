@@ -9,16 +9,17 @@
 #include <jansson.h>
 
 typedef struct Manifest {
-    json_t *made_with; // version, scene, camera path, options
+    json_t *made_with; // version, scene, camera, camera path, options
     long first, next;  // frames from the first to the one before next are whole
 } Manifest;
 
 /**
  * What this run makes frames with.
  * @param camera_path  the file as given, or NULL
+ * @param camera       the scene's that is meant
  * @return the exit code, after a message when files cannot be read
  */
-int manifest_make(const Run *run, const char *camera_path, long first, Manifest *out);
+int manifest_make(const Run *run, const char *camera_path, const SheenCamera *camera, long first, Manifest *out);
 void manifest_free(Manifest *manifest);
 
 /** Writes it beside the frames of every pattern. @return false after one line on stderr */

@@ -49,6 +49,8 @@ static bool read_size(const char *text, double min, double max, PictureSize *out
     return read_count(width, min, max, &out->width) && read_count(text + n + 1, min, max, &out->height);
 }
 
+const Choice cli_on_off[] = {{"on", SWITCH_ON}, {"off", SWITCH_OFF}, {0}};
+
 static const Choice *find_choice(const Choice *choices, const char *text, size_t length)
 {
     for (const Choice *c = choices; c->name; ++c)
@@ -135,6 +137,11 @@ static bool store(const Given *g)
         if (value != CHOICE_LATER) *(int *)g->field = value;
         return value != CHOICE_LATER;
     }
+    case OPTION_SWITCH: {
+        int value = g->text ? read_choice(g, g->text, strlen(g->text)) : SWITCH_ON;
+        if (value != CHOICE_LATER) *(int *)g->field = value;
+        return value != CHOICE_LATER;
+    }
     case OPTION_SET:
         return store_set(g);
     case OPTION_TEXT:
@@ -201,7 +208,11 @@ static bool parse_option(const Command *command, int argc, char **argv, int *i, 
     }
     g.field = (char *)values + offset;
     g.text = inline_text;
-    if (g.option->kind != OPTION_FLAG) {
+    if (g.option->kind == OPTION_SWITCH) {
+        // A word that follows is an operand unless it can only be the switch's.
+        const char *next = !g.text && *i + 1 < argc ? argv[*i + 1] : NULL;
+        if (next && find_choice(cli_on_off, next, strlen(next))) g.text = argv[++*i];
+    } else if (g.option->kind != OPTION_FLAG) {
         if (!g.text && *i + 1 < argc) g.text = argv[++*i];
         if (!g.text || !*g.text) {
             cli_usage_error(command, "%s: its argument %s is missing", g.shown, g.option->argument);

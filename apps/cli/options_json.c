@@ -29,6 +29,7 @@ static json_t *value_json(const Option *o, const void *field)
     case OPTION_NUMBER:
         return json_real(*(const double *)field);
     case OPTION_CHOICE:
+    case OPTION_SWITCH:
         return json_string(choice_name(o->choices, *(const int *)field));
     case OPTION_SIZE: {
         const PictureSize *size = field;

@@ -36,7 +36,6 @@ static const Choice filters[] = {
     {"mitchell", SHEEN_FILTER_MITCHELL}, {"catmullrom", SHEEN_FILTER_CATMULL_ROM},
     {"lanczos", SHEEN_FILTER_LANCZOS},   {0},
 };
-static const Choice on_off[] = {{"on", true}, {"off", false}, {0}};
 static const Choice progress_modes[] = {
     {"auto", PROGRESS_AUTO},
     {"plain", PROGRESS_PLAIN},
@@ -198,7 +197,7 @@ const Option render_options[] = {
                 "not skipped.",
      .standard = "on",
      .example = "--neighbor-clamping off",
-     .choices = on_off,
+     .choices = cli_on_off,
      .recorded = true,
      FIELD(neighbor_clamping)},
     {.kind = OPTION_CHOICE,
@@ -208,7 +207,7 @@ const Option render_options[] = {
                 "its value.",
      .standard = "on",
      .example = "--gradient-clamping off",
-     .choices = on_off,
+     .choices = cli_on_off,
      .recorded = true,
      FIELD(gradient_clamping)},
     {.kind = OPTION_SET,

@@ -31,11 +31,13 @@ static json_t *rays_json(const SheenStats *s)
 
 // "irradiance" and "radiance" count the records that the picture reads, "deep" those of the light beyond the first
 // bounce.
-static json_t *records_json(const SheenStats *s)
+static json_t *records_json(const RunStats *run)
 {
-    return json_pack("{s:I, s:I, s:i, s:I, s:i, s:I, s:i}", "irradiance", (json_int_t)s->records, "radiance",
+    const SheenStats *s = &run->render;
+    return json_pack("{s:I, s:I, s:i, s:I, s:I, s:I, s:i}", "irradiance", (json_int_t)s->records, "radiance",
                      (json_int_t)s->radiance_records, "light_vector", 0, "deep", (json_int_t)s->deep_records, "reused",
-                     0, "new", (json_int_t)(s->records + s->radiance_records + s->deep_records), "deleted", 0);
+                     (json_int_t)run->reused, "new", (json_int_t)(s->records + s->radiance_records + s->deep_records),
+                     "deleted", 0);
 }
 
 FrameStats frame_stats(long frame, double time, const SheenStats *stats)
@@ -80,9 +82,9 @@ char *stats_to_json(const Run *run, const RunStats *stats)
         SHEEN_VERSION, "scene", json_text(run->scene_path), "integrator", render_integrator_name(v), "size",
         (json_int_t)v->size.width, (json_int_t)v->size.height, "threads", (int)sheen_pool_size(run->pool), "seed",
         (json_int_t)v->seed, "options", options_json(run->command->options, run->all_values), "time", time_json(stats),
-        "rays", rays_json(s), "records", records_json(s), "cache_bytes", (json_int_t)s->cache_bytes, "peak_rss_bytes",
-        peak_rss_bytes(), "passes", (json_int_t)s->passes, "spp_done", (json_int_t)s->spp_done, "spp_mean", s->spp_mean,
-        "nonfinite_samples", (json_int_t)s->nonfinite_samples, "frames", frames_json(stats));
+        "rays", rays_json(s), "records", records_json(stats), "cache_bytes", (json_int_t)s->cache_bytes,
+        "peak_rss_bytes", peak_rss_bytes(), "passes", (json_int_t)s->passes, "spp_done", (json_int_t)s->spp_done,
+        "spp_mean", s->spp_mean, "nonfinite_samples", (json_int_t)s->nonfinite_samples, "frames", frames_json(stats));
     char *text = object ? json_dumps(object, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
     json_decref(object);
     return text;

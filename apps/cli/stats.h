@@ -13,10 +13,12 @@ typedef struct FrameStats {
     uint64_t added;   // of these, how many were made for it
 } FrameStats;
 
-/** What a run measured; counters and times are sums over its frames. Times in seconds. */
+/** What a run measured; counters and times are sums over its frames, in which a record counts
+ * once. Times in seconds. */
 typedef struct RunStats {
     double load, build, write, total;
     SheenStats render;
+    uint64_t reused;          // times that a frame read a record made before it
     const FrameStats *frames; // [n_frames]
     size_t n_frames;
 } RunStats;

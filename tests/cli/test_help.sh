@@ -24,6 +24,7 @@ for command in $commands; do
         grep -q 'Example: ' <<<"$block" || fail "$command $option has no example"
         [ -n "$argument" ] || continue
         grep -q 'Default: ' <<<"$block" || fail "$command $option has no default"
+        [ "${argument#[}" = "$argument" ] || continue # it may be left out
         expect 2 "$command" "$option"
         says "^sheen: $option: its argument .* is missing"
     done < <(grep -Eo '^  (-[a-z], )?--[a-z-]+( .*)?$' long | sed -E 's/^  (-[a-z], )?//')
