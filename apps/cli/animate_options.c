@@ -112,7 +112,8 @@ static const Option output_options[] = {
 static const Option later_options[] = {
     {.kind = OPTION_LATER, .name = "temporal-accuracy"},
     {.kind = OPTION_LATER, .name = "max-lifespan"},
-
+    {.kind = OPTION_LATER, .name = "cache-in"},
+    {.kind = OPTION_LATER, .name = "cache-out"},
     {0},
 };
 

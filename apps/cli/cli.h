@@ -59,7 +59,8 @@ typedef struct Option {
     size_t offset;        // of the field in the table's structure of values
     double min, max;
     const Choice *choices;
-    bool recorded; // the picture depends on it: it goes into statistics and EXR files
+    bool recorded;   // the picture depends on it: it goes into statistics and EXR files
+    bool of_records; // the records of the cache depend on it: it goes into cache files
 } Option;
 
 /** Options that several commands may share, and where the structure that they fill stands in the command's values. */

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// `sheen info`: what a scene or image file holds. Everything is collected as JSON; the text is the same, line by line.
+// `sheen info`: what a scene, image or cache file holds. Everything is collected as JSON; the text is the same, line by
+// line.
 #include "brdf_order.h"
+#include "cache_info.h"
 #include "cli.h"
 #include "exr_header.h"
 #include "json_text.h"
@@ -170,6 +172,12 @@ static json_t *image_json(const char *path, const SheenImage *image)
 
 // ---- output -----------------------------------------------------------------------------------------------------
 
+/** Names and attributes come from files: nothing in them reaches a terminal as a command. */
+static void print_text(const char *text)
+{
+    for (const char *c = text; *c; ++c) putchar((unsigned char)*c < ' ' || *c == 127 ? '?' : *c);
+}
+
 /** Prints a value in one line: `a 1, b 2` for an object, `1, 2` for an array. */
 static void print_value(const json_t *value, int depth)
 {
@@ -180,7 +188,9 @@ static void print_value(const json_t *value, int depth)
     if (json_is_object(value)) {
         json_object_foreach((json_t *)value, key, item)
         {
-            printf("%s%s ", n++ ? ", " : "", key);
+            if (n++) fputs(", ", stdout);
+            print_text(key);
+            putchar(' ');
             print_value(item, depth + 1);
         }
     } else if (json_is_array(value)) {
@@ -192,13 +202,13 @@ static void print_value(const json_t *value, int depth)
         }
         if (depth) putchar(')');
     } else if (json_is_string(value)) {
-        // Names and attributes come from files: nothing in them reaches a terminal as a command.
-        for (const char *c = json_string_value(value); *c; ++c)
-            putchar((unsigned char)*c < ' ' || *c == 127 ? '?' : *c);
+        print_text(json_string_value(value));
     } else if (json_is_integer(value)) {
         printf("%lld", (long long)json_integer_value(value));
     } else if (json_is_real(value)) {
         printf("%.6g", json_real_value(value));
+    } else if (json_is_boolean(value)) {
+        fputs(json_is_true(value) ? "yes" : "no", stdout);
     } else {
         fputs("none", stdout);
     }
@@ -210,13 +220,15 @@ static int print_info(json_t *info, bool as_json)
     if (!info) return cli_error("out of memory");
     const char *key;
     json_t *value;
+    int width = 10;
+    json_object_foreach(info, key, value) width = (int)strlen(key) > width ? (int)strlen(key) : width;
     if (as_json) {
         json_dumpf(info, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
         putchar('\n');
     } else {
         json_object_foreach(info, key, value)
         {
-            printf("%-11s", key);
+            printf("%-*s", width + 1, key);
             print_value(value, 0);
             putchar('\n');
         }
@@ -225,14 +237,50 @@ static int print_info(json_t *info, bool as_json)
     return cli_finish_stdout();
 }
 
-static bool is_image(const char *path)
+static bool ends_in(const char *path, const char *const endings[])
 {
-    static const char *const endings[] = {".exr",  ".hdr", ".pfm", ".png", ".jpg",
-                                          ".jpeg", ".tga", ".bmp", ".ppm", ".pgm"};
     const char *dot = strrchr(path, '.');
-    for (size_t i = 0; dot && i < sizeof endings / sizeof *endings; ++i)
+    for (size_t i = 0; dot && endings[i]; ++i)
         if (strcasecmp(dot, endings[i]) == 0) return true;
     return false;
+}
+
+static const char *const image_endings[] = {".exr", ".hdr", ".pfm", ".png", ".jpg", ".jpeg",
+                                            ".tga", ".bmp", ".ppm", ".pgm", NULL};
+static const char *const cache_endings[] = {".shc", NULL};
+
+static int image_info(const char *path, Report *report, json_t **info)
+{
+    SheenLog log = report_log(report);
+    SheenImage image;
+    int code = report_exit_code(report, sheen_image_read(path, &log, &image), path);
+    if (code == CLI_DONE) *info = image_json(path, &image);
+    sheen_image_free(&image);
+    return code;
+}
+
+static int cache_info(const char *path, Report *report, json_t **info)
+{
+    SheenLog log = report_log(report);
+    SheenCacheFile *file;
+    int code = report_exit_code(report, sheen_cache_file_read(path, &log, &file), path);
+    if (code == CLI_DONE) *info = cache_info_json(path, file);
+    sheen_cache_file_destroy(&file);
+    return code;
+}
+
+static int scene_info(const char *path, const InfoValues *values, Report *report, json_t **info)
+{
+    SheenLog log = report_log(report);
+    const TextList *defines = &values->scene.defines;
+    SheenScene *scene;
+    SheenStatus status = sheen_scene_load_with(path, (SheenDefines){defines->items, defines->n}, &log, &scene);
+    int code = report_exit_code(report, status, path);
+    if (code == CLI_DONE) *info = scene_json(path, scene);
+    if (code == CLI_DONE && values->brdf_order)
+        code = brdf_order_report(scene, values->brdf_order, &values->lobes, report, *info);
+    sheen_scene_destroy(&scene);
+    return code;
 }
 
 static int run_info(int argc, char **argv)
@@ -248,25 +296,13 @@ static int run_info(int argc, char **argv)
                                values.brdf_order);
     const char *path = argv[1];
     Report report = {.strict = values.scene.strict};
-    SheenLog log = report_log(&report);
     json_t *info = NULL;
-    if (is_image(path)) {
-        SheenImage image;
-        code = report_exit_code(&report, sheen_image_read(path, &log, &image), path);
-        if (code == CLI_DONE) info = image_json(path, &image);
-        sheen_image_free(&image);
-    } else {
-        SheenScene *scene;
-        code = report_exit_code(
-            &report,
-            sheen_scene_load_with(path, (SheenDefines){values.scene.defines.items, values.scene.defines.n}, &log,
-                                  &scene),
-            path);
-        if (code == CLI_DONE) info = scene_json(path, scene);
-        if (code == CLI_DONE && values.brdf_order)
-            code = brdf_order_report(scene, values.brdf_order, &values.lobes, &report, info);
-        sheen_scene_destroy(&scene);
-    }
+    if (ends_in(path, image_endings))
+        code = image_info(path, &report, &info);
+    else if (ends_in(path, cache_endings))
+        code = cache_info(path, &report, &info);
+    else
+        code = scene_info(path, &values, &report, &info);
     if (code == CLI_DONE) return print_info(info, values.json);
     json_decref(info);
     return code;
@@ -275,10 +311,12 @@ static int run_info(int argc, char **argv)
 const Command command_info = {
     .name = "info",
     .operands = "FILE",
-    .summary = "what a scene or image file holds",
+    .summary = "what a scene, image or cache file holds",
     .description =
-        "Prints what a scene file holds (shapes, triangles, materials and lights by kind, cameras, bounds) or "
-        "an image file (size, channels, mean, least and largest values, text attributes).",
+        "Prints what a scene file holds (shapes, triangles, materials and lights by kind, cameras, bounds), an image "
+        "file (size, channels, mean, least and largest values, text attributes) or a cache file that ends in .shc "
+        "(the scene's hash, the options that it was made with, and of each kind how many records, their order, their "
+        "least, mean and largest radius, and where they are).",
     .options = tables,
     .example = "sheen info scenes/cornell-box.xml",
     .run = run_info,

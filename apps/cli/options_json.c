@@ -54,18 +54,29 @@ static json_t *value_json(const Option *o, const void *field)
     return json_null();
 }
 
-json_t *options_json(const OptionTable *tables, const void *values)
+/** @return the options with a flag, which stands at `flag` in an Option. */
+static json_t *flagged_json(const OptionTable *tables, const void *values, size_t flag)
 {
     json_t *object = json_object();
     const Option *o;
     size_t offset;
     for (size_t i = 0; object && (o = cli_option(tables, i, &offset)); ++i) {
-        if (!o->recorded) continue;
+        if (!*(const bool *)((const char *)o + flag)) continue;
         if (json_object_set_new(object, o->name, value_json(o, (const char *)values + offset)) == 0) continue;
         json_decref(object);
         object = NULL;
     }
     return object;
+}
+
+json_t *options_json(const OptionTable *tables, const void *values)
+{
+    return flagged_json(tables, values, offsetof(Option, recorded));
+}
+
+json_t *options_json_of_records(const OptionTable *tables, const void *values)
+{
+    return flagged_json(tables, values, offsetof(Option, of_records));
 }
 
 json_t *options_json_value(const OptionTable *tables, const void *values, const char *name)

@@ -10,6 +10,9 @@
 /** @return the recorded options and their values as one object, a new reference; NULL when out of memory. */
 json_t *options_json(const OptionTable *tables, const void *values);
 
+/** The same of those that the records of the cache depend on. */
+json_t *options_json_of_records(const OptionTable *tables, const void *values);
+
 /** @return the value of the option of that name, which must be there, recorded or not; a new reference or NULL. */
 json_t *options_json_value(const OptionTable *tables, const void *values, const char *name);
 

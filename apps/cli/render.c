@@ -3,6 +3,7 @@
 #include "cli.h"
 #include "output.h"
 #include "picture_file.h"
+#include "record_files.h"
 #include "run.h"
 #include "stats.h"
 
@@ -37,16 +38,26 @@ static const Option picture_options[] = {
      .min = 0.001,
      .max = 1e9,
      .offset = offsetof(RenderValues, time_limit)},
-    {.kind = OPTION_LATER, .name = "records-only"},
+    {.kind = OPTION_FLAG,
+     .name = "records-only",
+     .meaning = "Make the records that the picture would need, write them to --cache-out, and no picture.",
+     .example = "--records-only --cache-out box.shc",
+     .offset = offsetof(RenderValues, cache.records_only)},
     {.kind = OPTION_LATER, .name = "frame"},
     {0},
 };
 
-static const OptionTable tables[] = {{output_options, 0}, RENDER_TABLES(0), {picture_options, 0}, {0}};
+static const OptionTable tables[] = {
+    {output_options, 0}, RENDER_TABLES(0), {cache_options, offsetof(RenderValues, cache)}, {picture_options, 0}, {0},
+};
 
-static bool check_values(const RenderValues *v)
+static bool check_outputs_given(const RenderValues *v)
 {
-    if (v->outputs.n == 0) {
+    if (v->cache.records_only && v->outputs.n > 0) {
+        cli_usage_error(&command_render, "--output: with --records-only there is no picture");
+        return false;
+    }
+    if (!v->cache.records_only && v->outputs.n == 0) {
         cli_usage_error(&command_render, "--output: at least one picture file is required");
         return false;
     }
@@ -62,6 +73,13 @@ static bool check_values(const RenderValues *v)
             return false;
         }
     }
+    return true;
+}
+
+static bool check_values(const RenderValues *v)
+{
+    bool has_cache = v->integrator != SHEEN_INTEGRATOR_PATH;
+    if (!cache_values_check(&command_render, &v->cache, has_cache) || !check_outputs_given(v)) return false;
     if (v->time_limit > 0.0 && v->integrator != SHEEN_INTEGRATOR_PATH) {
         cli_usage_error(&command_render, "--time-limit: goes with --integrator path only");
         return false;
@@ -74,6 +92,7 @@ static bool check_outputs(const RenderValues *v)
 {
     for (size_t i = 0; i < v->outputs.n; ++i)
         if (!output_check(v->outputs.items[i], false)) return false;
+    if (v->cache.out && !output_check(v->cache.out, false)) return false;
     return run_check_stats(v);
 }
 
@@ -100,13 +119,15 @@ static void print_summary(const Run *run, const RunStats *s)
 {
     const RenderValues *v = run->values;
     if (run->report.quiet || v->progress == PROGRESS_NONE) return;
-    fprintf(stderr, "sheen: %s", v->outputs.items[0]);
+    const SheenStats *r = &s->render;
+    uint64_t records = r->records + r->radiance_records;
+    fprintf(stderr, "sheen: %s", v->cache.records_only ? v->cache.out : v->outputs.items[0]);
     if (v->outputs.n > 1) fprintf(stderr, " and %zu more", v->outputs.n - 1);
     fprintf(stderr, ": %u x %u, %s", v->size.width, v->size.height, render_integrator_name(v));
-    if (s->render.records) fprintf(stderr, ", %llu records", (unsigned long long)s->render.records);
+    if (records) fprintf(stderr, ", %llu records", (unsigned long long)records);
+    if (v->cache.in.n) fprintf(stderr, " (%llu new)", (unsigned long long)(records - s->from_files));
     fprintf(stderr, ", %.2f s\n", s->total);
     if (!run->report.verbose) return;
-    const SheenStats *r = &s->render;
     fprintf(stderr,
             "sheen: seconds: load %.2f, build %.2f, visibility %.2f, fill %.2f, direct %.2f, interpolate %.2f, "
             "write %.2f\n",
@@ -116,35 +137,105 @@ static void print_summary(const Run *run, const RunStats *s)
             (unsigned long long)r->rays_path, (unsigned long long)r->rays_specular);
 }
 
+/** The records of the loaded scene, and the picture made from them. */
+typedef struct Work {
+    Run *run;
+    RunStats *stats;
+    SheenSession *session;
+    SheenShot shot;
+    bool kept; // the records are in --cache-out
+} Work;
+
+static int write_records(Work *w)
+{
+    double start = sheen_clock_seconds();
+    int code = record_files_write(w->run, w->session);
+    w->stats->write += sheen_clock_seconds() - start;
+    w->kept = code == CLI_DONE && w->run->values->cache.out;
+    return code;
+}
+
+/** Ctrl-C in the middle: with --cache-out what was made so far is not lost. @return the exit code */
+static int interrupted(Work *w)
+{
+    uint64_t n = w->session ? record_files_count(w->session) : 0;
+    const char *path = w->run->values->cache.out;
+    if (path && !w->kept && n > 0) {
+        SheenStatus status = sheen_session_settle(w->session, &w->stats->render);
+        int code = report_exit_code(&w->run->report, status, w->run->scene_path);
+        if (code == CLI_DONE) code = write_records(w);
+        if (code != CLI_DONE) return code;
+    }
+    if (!w->kept) return run_tell_interrupted(w->run, "nothing was written");
+    char what[1024];
+    snprintf(what, sizeof what, "%s has the %llu records made so far", path, (unsigned long long)n);
+    return run_tell_interrupted(w->run, what);
+}
+
+/** Makes the records that the picture needs and writes them. @return the library's status; *code the exit code */
+static SheenStatus make_records(Work *w, int *code)
+{
+    SheenStats *stats = &w->stats->render;
+    *code = record_files_read(w->run, w->session, &w->stats->from_files);
+    if (*code != CLI_DONE) return SHEEN_OK;
+    SheenStatus status = sheen_session_look(w->session, &w->shot, stats);
+    if (status == SHEEN_OK) status = sheen_session_fill(w->session, &w->shot, stats);
+    if (status == SHEEN_OK) status = sheen_session_settle(w->session, stats);
+    if (status == SHEEN_OK) *code = write_records(w);
+    return status;
+}
+
+/** @param film  gets the picture; none with --records-only @return the exit code */
+static int make_picture(Work *w, const SheenSessionDesc *desc, SheenFilm **film)
+{
+    const RenderValues *v = w->run->values;
+    SheenStats *stats = &w->stats->render;
+    int code = CLI_DONE;
+    SheenStatus status = sheen_session_create(desc, stats, &w->stats->build, &w->session);
+    if (status == SHEEN_OK) status = make_records(w, &code);
+    if (status == SHEEN_OK && code == CLI_DONE) {
+        if (v->cache.records_only)
+            sheen_caches_count(sheen_session_caches(w->session), stats);
+        else
+            status = sheen_session_shade(w->session, &w->shot, v->aovs, film, stats);
+    }
+    if (status == SHEEN_ERR_CANCELLED) return interrupted(w);
+    return code == CLI_DONE ? report_exit_code(&w->run->report, status, w->run->scene_path) : code;
+}
+
 /** Renders the loaded scene. @param film  gets the picture */
 static int render(Run *run, RenderValues *values, FrameStats *frame, SheenFilm **film, RunStats *stats)
 {
-    static const char nothing[] = "nothing was written";
-    uint32_t camera;
-    if (!run_find_camera(run, &camera)) return CLI_USAGE;
-    if (run_is_interrupted(run)) return run_tell_interrupted(run, nothing);
+    uint32_t index;
+    if (!run_find_camera(run, &index)) return CLI_USAGE;
+    if (run_is_interrupted(run)) return run_tell_interrupted(run, "nothing was written");
     int code = run_start_threads(run);
     if (code != CLI_DONE) return code;
-    SheenRenderSettings settings = render_values_settings(values, &run->scene->cameras[camera], camera);
+    double start = sheen_clock_seconds();
+    const SheenCamera *camera = &run->scene->cameras[index];
+    SheenRenderSettings settings = render_values_settings(values, camera, index);
     SheenProgress progress = progress_show_sink(&run->show);
-    SheenRenderTimes times;
-    SheenStatus status = sheen_render(run->scene, &settings, run->pool, run->interrupted, &progress, &run->log, film,
-                                      &stats->render, &times);
-    if (status == SHEEN_ERR_CANCELLED) return run_tell_interrupted(run, nothing);
-    stats->build = times.build;
-    *frame = frame_stats(0, times.total, &stats->render);
+    SheenSessionDesc desc = {run->scene,       settings.integrator, settings.options, run->pool,
+                             run->interrupted, &progress,           &run->log};
+    Work work = {.run = run, .stats = stats, .shot = {camera, settings.width, settings.height, settings.filter}};
+    code = make_picture(&work, &desc, film);
+    sheen_session_destroy(&work.session);
+    if (code != CLI_DONE) return code;
+    *frame = frame_stats(0, sheen_clock_seconds() - start, &stats->render);
+    frame->added -= stats->from_files;
     run_warn_nonfinite(run, stats->render.nonfinite_samples);
-    return report_exit_code(&run->report, status, run->scene_path);
+    return report_exit_code(&run->report, SHEEN_OK, run->scene_path);
 }
 
+/** @param film  NULL where there is no picture */
 static int write_all(Run *run, const SheenFilm *film, RunStats *stats)
 {
     double start = sheen_clock_seconds();
-    SheenStatus status = write_pictures(run, film);
+    SheenStatus status = film ? write_pictures(run, film) : SHEEN_OK;
     stats->load = run->load;
-    stats->write = sheen_clock_seconds() - start;
+    stats->write += sheen_clock_seconds() - start;
     stats->total = sheen_clock_seconds() - run->start;
-    int code = report_exit_code(&run->report, status, run->values->outputs.items[0]);
+    int code = report_exit_code(&run->report, status, film ? run->values->outputs.items[0] : run->scene_path);
     if (code == CLI_DONE && run->values->stats) code = run_write_stats(run->values, stats_to_json(run, stats));
     if (code == CLI_DONE) print_summary(run, stats);
     // The picture was whole when the signal came; that it is there does not make the run an undisturbed one.
@@ -185,7 +276,11 @@ const Command command_render = {
         "The picture holds radiance in the scene's units and linear sRGB primaries; .exr files carry the options, the "
         "seed, the version and the scene's name as attributes. The same scene, options and seed give the same file, "
         "bit by bit, at any number of threads.\n"
-        "Ctrl-C drops the picture in work and leaves existing files as they are; twice stops at once.",
+        "With --cache-out the records of its cache outlive the picture: a later run of the same scene, from this view "
+        "or another, takes them with --cache-in. With the same options and view it gives the same picture, bit by "
+        "bit.\n"
+        "Ctrl-C drops the picture in work and leaves existing files as they are; twice stops at once. With --cache-out "
+        "once writes the records made so far.",
     .options = tables,
     .example = "sheen render scenes/cornell-box.xml -o box.exr -o box.png --spp 64",
     .run = run_render,

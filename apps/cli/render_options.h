@@ -3,6 +3,7 @@
 #ifndef SHEEN_CLI_RENDER_OPTIONS_H
 #define SHEEN_CLI_RENDER_OPTIONS_H
 
+#include "cache_options.h"
 #include "lobe_options.h"
 #include "progress.h"
 #include "scene_options.h"
@@ -14,6 +15,7 @@ typedef struct RenderValues {
     TextList outputs; // pictures, patterns of pictures
     SceneValues scene;
     LobeValues lobes;
+    CacheValues cache;
     int integrator; // SheenIntegrator
     PictureSize size;
     int filter;         // SheenFilterKind; SHEEN_FILTER_UNSET for the camera's
@@ -33,7 +35,7 @@ typedef struct RenderValues {
     bool quiet, verbose;
 } RenderValues;
 
-/** Of a RenderValues; those in `scene` and `lobes` have tables of their own. */
+/** Of a RenderValues; those in `scene`, `lobes` and `cache` have tables of their own. */
 extern const Option render_options[];
 
 /** The tables of the options that all commands share that render, for a RenderValues at `base`. */

@@ -30,14 +30,14 @@ static json_t *rays_json(const SheenStats *s)
 }
 
 // "irradiance" and "radiance" count the records that the picture reads, "deep" those of the light beyond the first
-// bounce.
+// bounce. "new" is what does not come from cache files.
 static json_t *records_json(const RunStats *run)
 {
     const SheenStats *s = &run->render;
+    uint64_t made = s->records + s->radiance_records + s->deep_records - run->from_files;
     return json_pack("{s:I, s:I, s:i, s:I, s:I, s:I, s:i}", "irradiance", (json_int_t)s->records, "radiance",
                      (json_int_t)s->radiance_records, "light_vector", 0, "deep", (json_int_t)s->deep_records, "reused",
-                     (json_int_t)run->reused, "new", (json_int_t)(s->records + s->radiance_records + s->deep_records),
-                     "deleted", 0);
+                     (json_int_t)(run->reused + run->from_files), "new", (json_int_t)made, "deleted", 0);
 }
 
 FrameStats frame_stats(long frame, double time, const SheenStats *stats)

@@ -19,6 +19,7 @@ typedef struct RunStats {
     double load, build, write, total;
     SheenStats render;
     uint64_t reused;          // times that a frame read a record made before it
+    uint64_t from_files;      // records of --cache-in
     const FrameStats *frames; // [n_frames]
     size_t n_frames;
 } RunStats;

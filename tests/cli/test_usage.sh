@@ -62,7 +62,7 @@ refused --aov "${R[@]}" --aov depth,,normal
 refused --time-limit "${R[@]}" --time-limit 1
 
 # Options and values of later versions say so.
-for option in error-metric adaptive discernible cache-in cache-out records-only frame; do
+for option in error-metric adaptive discernible frame; do
     refused "--$option" "${R[@]}" "--$option" 1
     grep -q 'not in this version' err || fail "--$option does not say that it is not in this version"
 done
