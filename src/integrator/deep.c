@@ -6,6 +6,7 @@
 #include "math/warp.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 // Measured on the Cornell box and a staircase: finer gathers or records gain nothing, coarser ones bias
 // (docs/irradiance-caching.md).
@@ -28,8 +29,10 @@ static const float cell_per_distance = 0.2f;
 typedef struct DeepCell {
     Vec3 p, n, ng;  // the hit's vertex; p is off the surface, where rays leave; of the sky, where it shines in
     Rgb weight;     // radiance per irradiance there; black without vertex
+    bool turned;    // the vertex lies beyond a wide glossy surface, one scattering more away
     Rgb sky;        // radiance of the sky and of caustics
-    Rgb direct;     // what direct light makes it send: weight times irradiance, of rough glossy surfaces what is seen
+    Rgb direct;     // after one scattering: weight times direct irradiance, and what lamps send to glossy surfaces
+    Rgb beyond;     // after two: the same of a vertex that is turned to
     float distance; // INFINITY for the sky
     uint32_t record[KEPT];
     float share[KEPT]; // of the records' irradiance; sum 1, or all 0 where no record covers the hit: it then takes the
@@ -132,12 +135,12 @@ static SheenStatus place(SheenDeep *d, Queue *q, uint32_t most, Hemisphere *prob
 
 typedef struct DeepTask {
     SheenDeep *deep;
-    Hemisphere *scratch; // [workers]
-    SheenStats *stats;   // [workers]
-    uint32_t first;      // record of item 0
-    unsigned k;          // bounce of the sweep
-    const Rgb *before;   // [records] E_k-1
-    Rgb *now;            // [records] E_k
+    Hemisphere *scratch;  // [workers]
+    SheenStats *stats;    // [workers]
+    uint32_t first;       // record of item 0
+    unsigned k;           // bounce of the sweep
+    const Rgb *before[2]; // [records] E_k-1, E_k-2
+    Rgb *now;             // [records] E_k
 } DeepTask;
 
 static DeepCell *cells_of(const SheenDeep *d, uint32_t record)
@@ -152,37 +155,51 @@ static Vec3 shines_in(const SheenDeep *d, uint32_t record, const Hemisphere *h, 
     return v3_mad(from, bounds_exit(&d->work->scene->bounds, from, along), along);
 }
 
+// Takes the light that a stratum has by now out of the gather.
+static Rgb take_light(Hemisphere *h, size_t cell)
+{
+    Rgb L = rgb_add(h->L[cell], h->apart[cell]);
+    h->L[cell] = h->apart[cell] = rgb_gray(0.0f);
+    return L;
+}
+
+static void set_vertex(const GatherVertex *v, bool turned, DeepCell *c)
+{
+    c->p = v->point.origin;
+    c->n = v->point.n;
+    c->ng = v->point.ng;
+    c->weight = v->weight;
+    c->turned = turned;
+}
+
 static void gather_task(void *user, size_t item, unsigned worker)
 {
     DeepTask *t = user;
     SheenDeep *d = t->deep;
+    const SheenWork *work = d->work;
     uint32_t record = t->first + (uint32_t)item;
     Hemisphere *h = &t->scratch[worker];
-    Rgb shine[DEEP_CELLS] = {0};
+    SheenStats *stats = &t->stats[worker];
     sheen_hemisphere_begin(&d->points[record], point_key(d, record, 1), h);
-    h->gloss = true;
-    h->shine = shine;
-    sheen_hemisphere_trace(d->work, &d->points[record], 1, h, &t->stats[worker]);
-    sheen_hemisphere_add_caustics(d->work, &d->points[record], 1.0f, h, &t->stats[worker]);
+    memset(h->apart, 0, h->cells * sizeof *h->apart);
+    h->glossy = h->apart;
+    sheen_hemisphere_trace(work, &d->points[record], 2, h, stats); // what turns goes on once
+    sheen_hemisphere_add_caustics(work, &d->points[record], 1.0f, h, stats);
     DeepCell *cells = cells_of(d, record);
     for (size_t i = 0; i < h->cells; ++i) {
         bool sky = isinf(h->distance[i]) && !h->specular[i];
-        cells[i] = (DeepCell){.p = sky ? shines_in(d, record, h, i) : d->points[record].p,
-                              .sky = h->L[i],
-                              .direct = shine[i],
-                              .distance = h->distance[i]};
+        cells[i] = (DeepCell){
+            .p = sky ? shines_in(d, record, h, i) : d->points[record].p, .sky = h->L[i], .distance = h->distance[i]};
         h->L[i] = rgb_gray(0.0f);
     }
-    sheen_hemisphere_direct(d->work, 0, 1, h, &t->stats[worker]);
-    for (size_t i = 0; i < h->n_vertices; ++i) {
-        const GatherVertex *v = &h->vertices[i];
-        DeepCell *c = &cells[v->cell];
-        c->p = v->point.origin;
-        c->n = v->point.n;
-        c->ng = v->point.ng;
-        c->weight = v->weight;
-        c->direct = rgb_add(c->direct, h->L[v->cell]);
-    }
+    sheen_hemisphere_direct(work, 0, 1, h, stats);
+    for (size_t i = 0; i < h->cells; ++i) cells[i].direct = take_light(h, i);
+    size_t before = h->n_vertices, kept = before - sheen_hemisphere_extend(work, 0.0f, h, stats);
+    for (size_t i = 0; i < h->cells; ++i) cells[i].direct = rgb_add(cells[i].direct, h->L[i]); // the sky beyond
+    memset(h->L, 0, h->cells * sizeof *h->L);
+    sheen_hemisphere_direct(work, kept, 1, h, stats);
+    for (size_t i = 0; i < h->cells; ++i) cells[i].beyond = take_light(h, i);
+    for (size_t i = 0; i < h->n_vertices; ++i) set_vertex(&h->vertices[i], i >= kept, &cells[h->vertices[i].cell]);
 }
 
 static void link_task(void *user, size_t item, unsigned worker)
@@ -279,13 +296,22 @@ static SheenStatus place_and_gather(SheenDeep *d, const Queue *seeds, DeepTask *
 
 // ---- solution ---------------------------------------------------------------------------------------------------
 
-// Radiance that a stratum sends after k bounces.
-static Rgb cell_radiance(const DeepCell *c, unsigned k, const Rgb before[], size_t own)
+// Irradiance at a stratum's vertex. @param E  [records]
+static Rgb irradiance_of(const DeepCell *c, const Rgb E[], size_t own)
+{
+    Rgb sum = c->share[0] > 0.0f ? rgb_gray(0.0f) : E[own];
+    for (int i = 0; i < KEPT && c->share[i] > 0.0f; ++i) sum = rgb_mad(sum, c->share[i], E[c->record[i]]);
+    return sum;
+}
+
+// Radiance that a stratum sends after k bounces. @param before  E_k-1 and E_k-2
+static Rgb cell_radiance(const DeepCell *c, unsigned k, const Rgb *const before[2], size_t own)
 {
     if (k == 0) return c->sky;
-    Rgb E = c->share[0] > 0.0f ? rgb_gray(0.0f) : before[own];
-    for (int i = 0; i < KEPT && c->share[i] > 0.0f; ++i) E = rgb_mad(E, c->share[i], before[c->record[i]]);
-    return rgb_add(c->sky, rgb_add(c->direct, rgb_mul(c->weight, E)));
+    Rgb L = rgb_add(c->sky, c->direct);
+    if (c->turned && k == 1) return L;
+    Rgb E = irradiance_of(c, before[c->turned ? 1 : 0], own);
+    return rgb_add(L, rgb_add(c->beyond, rgb_mul(c->weight, E)));
 }
 
 static void sweep_task(void *user, size_t item, unsigned worker)
@@ -325,12 +351,13 @@ static float neighbors_mean(const float L[], unsigned cell)
 // its neighbors. What came by a mirror is left out: it does not lie where it is seen.
 static void find_hot_spots(SheenDeep *d, const Rgb E[])
 {
+    const Rgb *const before[2] = {E, E};
     const float times_mean = 10.0f, times_neighbors = 3.0f;
     float L[DEEP_CELLS];
     for (uint32_t r = 0; r < d->gathered; ++r) {
         const DeepCell *cells = cells_of(d, r);
         float sum = 0.0f;
-        for (unsigned i = 0; i < DEEP_CELLS; ++i) sum += L[i] = rgb_luminance(cell_radiance(&cells[i], 1, E, r));
+        for (unsigned i = 0; i < DEEP_CELLS; ++i) sum += L[i] = rgb_luminance(cell_radiance(&cells[i], 1, before, r));
         for (unsigned i = 0; i < DEEP_CELLS; ++i) {
             const DeepCell *c = &cells[i];
             if (!(DEEP_CELLS * L[i] > times_mean * sum)) continue;
@@ -345,23 +372,24 @@ static void find_hot_spots(SheenDeep *d, const Rgb E[])
 static SheenStatus solve(SheenDeep *d, DeepTask *task)
 {
     size_t n = d->gathered;
-    Rgb *E[2] = {calloc(n + 1, sizeof(Rgb)), calloc(n + 1, sizeof(Rgb))};
-    SheenStatus status = E[0] && E[1] ? SHEEN_OK : SHEEN_ERR_NOMEM;
+    Rgb *E[3];
+    for (int i = 0; i < 3; ++i) E[i] = calloc(n + 1, sizeof(Rgb));
+    SheenStatus status = E[0] && E[1] && E[2] ? SHEEN_OK : SHEEN_ERR_NOMEM;
     for (int i = 0; i < SHEEN_DEEP_LEVELS; ++i) {
         d->light[i] = calloc(n + 1, sizeof(IrradianceLight));
         if (!d->light[i]) status = SHEEN_ERR_NOMEM;
     }
     for (unsigned k = 0; k <= d->bounces && status == SHEEN_OK; ++k) {
         task->k = k;
-        task->before = E[(k + 1) & 1];
-        task->now = E[k & 1];
+        task->before[0] = E[(k + 2) % 3];
+        task->before[1] = E[(k + 1) % 3];
+        task->now = E[k % 3];
         if (!sheen_pool_run(d->work->pool, n, sweep_task, task, d->work->cancel)) status = SHEEN_ERR_CANCELLED;
     }
     for (int i = 0; i < SHEEN_DEEP_LEVELS && status == SHEEN_OK; ++i)
         for (size_t j = 0; j < n; ++j) d->mean[i] = rgb_mad(d->mean[i], 1.0f / (float)n, d->light[i][j].E);
-    if (status == SHEEN_OK) find_hot_spots(d, E[d->bounces & 1]);
-    free(E[0]);
-    free(E[1]);
+    if (status == SHEEN_OK) find_hot_spots(d, E[d->bounces % 3]);
+    for (int i = 0; i < 3; ++i) free(E[i]);
     return status;
 }
 

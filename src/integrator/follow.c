@@ -22,6 +22,8 @@ bool sheen_lambertian_point(const SheenScene *scene, const SheenMaterial *materi
 
 // A rough reflection at least so wide is nearly the same from everywhere, next to all else that a gather blurs.
 static const float wide_roughness = 0.2f;
+// Of a highlight narrower than this a light sample seldom finds what it sends.
+static const float lit_roughness = 0.1f;
 
 static bool goes_on(const BsdfSample *s)
 {
@@ -52,12 +54,16 @@ SheenStep sheen_step(const SurfacePoint *s, const Bsdf *bsdf, Vec3 wo, SheenSamp
         *next = sheen_surface_ray(s, v3_neg(wo));
         return SHEEN_STEP_PASSES;
     }
+    Vec3 wi = frame_to_world(&frame, sample.wi_l);
+    bool through = sample.wi_l.z * v3_dot(wi, s->ng) <= 0.0f; // the side that the shading normal alone denies
     if (!goes_on(&sample)) {
         bool front = (v3_dot(wo, s->ng) >= 0.0f) != sample.transmit;
-        return sheen_set_point(s, front, sample.weight, point) ? SHEEN_STEP_SCATTERS : SHEEN_STEP_ENDS;
+        bool turns = sample.roughness < 1.0f;
+        if ((turns && through) || !sheen_set_point(s, front, sample.weight, point)) return SHEEN_STEP_ENDS;
+        *next = sheen_surface_ray(s, wi);
+        return turns ? SHEEN_STEP_TURNS : SHEEN_STEP_SCATTERS;
     }
-    Vec3 wi = frame_to_world(&frame, sample.wi_l);
-    if (!(sample.wi_l.z * v3_dot(wi, s->ng) > 0.0f)) return SHEEN_STEP_ENDS;
+    if (through) return SHEEN_STEP_ENDS;
     *throughput = rgb_mul(*throughput, sample.weight);
     *next = sheen_surface_ray(s, wi);
     return SHEEN_STEP_GOES_ON;
@@ -88,12 +94,14 @@ void sheen_follow(const SheenWork *work, const Ray *ray, const Hit *hit, SheenSa
         }
         Bsdf bsdf;
         sheen_bsdf_look_up(work->scene, &s, &bsdf);
-        out->glossy = sheen_bsdf_is_rough(&bsdf, wide_roughness);
+        out->glossy = sheen_bsdf_is_rough(&bsdf, wide_roughness, lit_roughness);
         if (out->glossy) out->surface = s;
         Rgb found = out->specular > 0 ? rgb_mul(out->throughput, out->emitted) : rgb_gray(0.0f);
         SheenStep step = sheen_step(&s, &bsdf, wo, sampler, &out->throughput, &next, &out->point);
-        out->scatters = step == SHEEN_STEP_SCATTERS;
-        if (step == SHEEN_STEP_SCATTERS || step == SHEEN_STEP_ENDS) return;
+        out->turns = step == SHEEN_STEP_TURNS;
+        if (out->turns) out->onward = next.d;
+        out->scatters = step == SHEEN_STEP_SCATTERS || out->turns;
+        if (out->scatters || step == SHEEN_STEP_ENDS) return;
         out->passed = rgb_add(out->passed, found);
         out->emitted = rgb_gray(0.0f);
         if (step == SHEEN_STEP_PASSES ? out->passages++ == SHEEN_PASSAGES_MAX : out->specular++ == SHEEN_SPECULAR_MAX)

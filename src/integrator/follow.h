@@ -34,17 +34,19 @@ bool sheen_lambertian_point(const SheenScene *scene, const SheenMaterial *materi
 
 /** What becomes of a ray at a surface. */
 typedef enum SheenStep {
-    SHEEN_STEP_ENDS,    // absorbed
-    SHEEN_STEP_PASSES,  // straight through a hole: light samples do so too, so that nothing has happened
-    SHEEN_STEP_GOES_ON, // through a mirror, a pane, or along a narrow glossy reflection
-    SHEEN_STEP_SCATTERS // at a point that counts as diffuse
+    SHEEN_STEP_ENDS,     // absorbed
+    SHEEN_STEP_PASSES,   // straight through a hole: light samples do so too, so that nothing has happened
+    SHEEN_STEP_GOES_ON,  // through a mirror, a pane, or along a narrow glossy reflection
+    SHEEN_STEP_SCATTERS, // at a point that counts as diffuse
+    SHEEN_STEP_TURNS     // the same, but by a glossy lobe, along `next`
 } SheenStep;
 
 /**
  * One way that light comes from, chosen by the sampler with the BSDF's own probabilities, so that blends, masks and
  * layers are right in the mean. Mirrors, passage and glossy lobes narrower than roughness 0.2 are followed. All else
  * counts as a Lambertian surface: diffuse lobes, wide glossy ones, and coats and highlights, narrow as they be, which
- * would make caustics; its reflectance is one sample's weight, whose mean is the albedo for wo. Light that comes
+ * would make caustics; its reflectance is one sample's weight, whose mean is the albedo for wo. Of a glossy lobe it is
+ * the weight of the direction drawn, which is told too: light other than lamps' may be asked there. Light that comes
  * through from behind makes it a surface of the other side.
  * @param wo          unit, toward the viewer
  * @param throughput  is multiplied where the ray passes or goes on
@@ -63,6 +65,8 @@ typedef struct Followed {
     bool escaped;      // left the scene along `direction`
     unsigned specular; // mirrors and panes on the way
     unsigned passages; // holes
+    bool turns;        // `point` scatters by a glossy lobe, and this time from `onward`
+    Vec3 onward;
     DiffusePoint point;
     SurfacePoint surface;
     Vec3 direction; // of the last segment

@@ -35,7 +35,7 @@ static void light_vertices(const SheenWork *work, const SheenDeep *deep, Hemisph
     sheen_hemisphere_direct(work, 0, LIGHT_SAMPLES, h, stats);
     bool paths = work->options.secondary == SHEEN_SECONDARY_PATH;
     float near = paths ? INFINITY : deep ? sheen_deep_near(deep) : 0.0f;
-    unsigned extensions = paths ? work->options.bounces : EXTENSIONS_MAX;
+    unsigned extensions = paths ? work->options.bounces : deep ? EXTENSIONS_MAX : 0;
     for (unsigned i = 0; i < extensions; ++i) {
         size_t before = h->n_vertices, moved = sheen_hemisphere_extend(work, near, h, stats);
         if (moved == 0) break;
@@ -76,7 +76,7 @@ const Hemisphere *sheen_gather_light(const SheenGatherer *gatherer, const Diffus
     Hemisphere *h = &gatherer->scratch[worker];
     unsigned bounces = work->options.bounces;
     sheen_hemisphere_begin(point, key, h);
-    h->gloss = true;
+    h->glossy = h->L;
     if (deep) choose_guide(work, deep, point, h);
     sheen_hemisphere_trace(work, point, bounces, h, stats);
     light_vertices(work, deep, h, stats);

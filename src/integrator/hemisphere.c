@@ -21,6 +21,7 @@ void sheen_hemisphere_free(Hemisphere *h)
     free(h->caustic);
     free(h->specular);
     free(h->mirrored);
+    free(h->apart);
     free(h->through);
     free(h->sorted);
     free(h->extra);
@@ -50,6 +51,7 @@ bool sheen_hemisphere_reserve(Hemisphere *h, SheenStrata strata)
         h->caustic = malloc(n * sizeof *h->caustic);
         h->specular = malloc(n);
         h->mirrored = malloc(n * sizeof *h->mirrored);
+        h->apart = malloc(n * sizeof *h->apart);
         h->through = malloc(n * sizeof *h->through);
         h->sorted = malloc(n * sizeof *h->sorted);
         h->extra = malloc(n * sizeof *h->extra);
@@ -65,9 +67,9 @@ bool sheen_hemisphere_reserve(Hemisphere *h, SheenStrata strata)
         h->points = malloc(rays * sizeof *h->points);
         h->numbers = malloc(rays * sizeof *h->numbers);
         h->irradiance = malloc(rays * sizeof *h->irradiance);
-        if (!h->directions || !h->L || !h->caustic || !h->specular || !h->mirrored || !h->through || !h->sorted ||
-            !h->extra || !h->further || !h->value || !h->deviation || !h->distance || !h->normals || !h->vertices ||
-            !h->moved || !h->rays || !h->hits || !h->points || !h->numbers || !h->irradiance ||
+        if (!h->directions || !h->L || !h->caustic || !h->specular || !h->mirrored || !h->apart || !h->through ||
+            !h->sorted || !h->extra || !h->further || !h->value || !h->deviation || !h->distance || !h->normals ||
+            !h->vertices || !h->moved || !h->rays || !h->hits || !h->points || !h->numbers || !h->irradiance ||
             !sheen_direct_reserve(&h->direct, rays)) {
             sheen_hemisphere_free(h);
             return false;
@@ -117,16 +119,18 @@ static void receive(const SheenWork *work, const Followed *f, Rgb weight, uint32
     if (f->specular > 0 && f->scatters) h->specular[cell] = 1; // the soft sky behind a pane is as good as without it
     h->caustic[cell] = rgb_add(h->caustic[cell], rgb_mul(weight, caustic_of(work, f)));
     if (bounces == 0) return;
-    bool lit = h->gloss && f->glossy && sheen_lights_count(work->lights) > 0;
+    bool lit = h->glossy && f->glossy && sheen_lights_count(work->lights) > 0;
     if (lit) {
         LightNumbers numbers = light_numbers(h->key, bounces, ray);
         Rgb L = sheen_glossy_lit_once(work, &f->surface, v3_neg(f->direction), numbers, stats);
-        Rgb *to = h->shine ? h->shine : h->L;
-        if (rgb_finite(L)) to[cell] = rgb_add(to[cell], rgb_mul(through, L));
+        if (rgb_finite(L)) h->glossy[cell] = rgb_add(h->glossy[cell], rgb_mul(through, L));
     }
     if (!f->scatters) return;
     Rgb reflected = rgb_scale(rgb_mul(through, f->point.reflectance), SHEEN_INV_PI);
-    h->vertices[h->n_vertices++] = (GatherVertex){f->point, reflected, cell, ray, f->distance, bounces, lit};
+    // Behind a mirror or a pane one direction of a lobe would be noise that sheen_hemisphere_add_caustics cuts.
+    bool turns = h->glossy && f->turns && f->specular == 0;
+    h->vertices[h->n_vertices++] =
+        (GatherVertex){f->point, reflected, cell, ray, f->distance, bounces, lit, turns, f->onward};
 }
 
 void sheen_hemisphere_directions(uint32_t key, Hemisphere *h)
@@ -182,8 +186,7 @@ void sheen_hemisphere_begin(const DiffusePoint *point, uint32_t key, Hemisphere 
     h->frame = frame_from_normal(point->n);
     h->error = 0.0f;
     h->guide.n = 0;
-    h->gloss = false;
-    h->shine = NULL;
+    h->glossy = NULL;
 }
 
 void sheen_hemisphere_trace(const SheenWork *work, const DiffusePoint *point, unsigned bounces, Hemisphere *h,
@@ -276,6 +279,17 @@ size_t sheen_hemisphere_refine(const SheenWork *work, const DiffusePoint *point,
 
 // ---- light at the vertices --------------------------------------------------------------------------------------
 
+// Draws a direction from a Lambertian vertex. @return its weight
+static float onward(const Hemisphere *h, const GatherVertex *v, uint32_t key, Vec3 *d)
+{
+    SheenSampler sampler = sampler_make(key, v->ray);
+    Frame frame = frame_from_normal(v->point.n);
+    float choice = sampler_1d(&sampler);
+    float weight = sheen_guide_direction(&h->guide, v->point.p, &frame, choice, sampler_2d(&sampler), d);
+    *d = frame_to_world(&frame, *d);
+    return weight;
+}
+
 size_t sheen_hemisphere_extend(const SheenWork *work, float near, Hemisphere *h, SheenStats *stats)
 {
     // Near vertices are taken out into rays; the rest closes up.
@@ -284,19 +298,16 @@ size_t sheen_hemisphere_extend(const SheenWork *work, float near, Hemisphere *h,
     GatherVertex *moved = h->moved;
     for (size_t i = 0; i < h->n_vertices; ++i) {
         GatherVertex v = h->vertices[i];
-        if (!(v.distance < near)) {
+        if (!v.turns && !(v.distance < near)) {
             if (kept++ < i) h->vertices[kept - 1] = v;
             continue;
         }
-        SheenSampler sampler = sampler_make(hash_combine(key, v.bounces), v.ray);
-        Frame frame = frame_from_normal(v.point.n);
-        float choice = sampler_1d(&sampler);
-        Vec3 d;
-        float weight = sheen_guide_direction(&h->guide, v.point.p, &frame, choice, sampler_2d(&sampler), &d);
+        Vec3 d = v.onward;
+        float weight = v.turns ? 1.0f : onward(h, &v, hash_combine(key, v.bounces), &d);
         if (!(weight > 0.0f)) continue;
         // One ray estimates the irradiance at the vertex by pi L, times its weight.
         v.weight = rgb_scale(v.weight, SHEEN_PI * weight);
-        h->rays[n_rays] = leave(&v.point, frame_to_world(&frame, d));
+        h->rays[n_rays] = leave(&v.point, d);
         moved[n_rays++] = v;
     }
     size_t taken = h->n_vertices - kept;

@@ -16,6 +16,8 @@ typedef struct GatherVertex {
     float distance;   // length of the way from the vertex before, metres
     unsigned bounces; // b: the light wanted here is direct light and b - 1 bounces; 0: the sky alone
     bool lit;         // its direct light is in L
+    bool turns;       // what it sends comes from `onward` alone: weight / (1/pi) of the radiance there
+    Vec3 onward;
 } GatherVertex;
 
 /** Further rays of a gather are at most so many times its strata. */
@@ -31,17 +33,17 @@ typedef struct GatherRay {
 /** Buffers of one worker, and the gather that they hold. */
 typedef struct Hemisphere {
     SheenStrata strata;
-    Frame frame;      // the local frame of `directions`
-    uint32_t key;     // of all random numbers of this gather
-    Guide guide;      // hot spots, for rays beside the first of each stratum
-    bool gloss;       // direct light on rough glossy surfaces is what they send here, not the mean of their sides
-    Rgb *shine;       // [cells] gets it, beside L; the caller's. NULL: L does
-    Vec3 *directions; // [cells] local
-    Rgb *L;           // [cells] radiance so far
-    Rgb *caustic;     // [cells] radiance of emitters seen through mirrors and glass
+    Frame frame;             // the local frame of `directions`
+    uint32_t key;            // of all random numbers of this gather
+    Guide guide;             // hot spots, for rays beside the first of each stratum
+    Vec3 *directions;        // [cells] local
+    Rgb *L;                  // [cells] radiance so far
+    Rgb *caustic;            // [cells] radiance of emitters seen through mirrors and glass
     unsigned char *specular; // [cells] 1 where a mirror or glass lay on the way
-    float *distance;         // [cells] to what sends it; INFINITY for the sky
-    Vec3 *normals;           // [cells] local, of what sends it, toward the point; along the ray for the sky
+    Rgb *glossy; // [cells] where direct light on rough glossy surfaces is added: L, h->apart, or NULL when these are
+                 // taken for Lambertian
+    float *distance; // [cells] to what sends it; INFINITY for the sky
+    Vec3 *normals;   // [cells] local, of what sends it, toward the point; along the ray for the sky
     GatherVertex *vertices;
     size_t n_vertices;
     float error; // relative standard error of the irradiance that sheen_hemisphere_refine expects
@@ -50,6 +52,7 @@ typedef struct Hemisphere {
     GatherRay *further;       // [SHEEN_FURTHER_MAX cells] those, and the ones into cones
     float *value, *deviation; // [cells]
     Rgb *mirrored;            // [cells]
+    Rgb *apart;               // [cells] for h->glossy
     uint32_t *through;        // cells whose ray came to a mirror or a pane
     uint32_t caustic_rays;    // rays in each of them
     float *sorted;            // [cells]
@@ -71,7 +74,7 @@ void sheen_hemisphere_free(Hemisphere *h);
 void sheen_hemisphere_directions(uint32_t key, Hemisphere *h);
 
 /** Begins a gather at a point: its frame and its key. It has no hot spots until sheen_guide_choose gives it some, and
- *  takes glossy surfaces for Lambertian unless h->gloss is set. */
+ *  takes glossy surfaces for Lambertian unless h->glossy is set. */
 void sheen_hemisphere_begin(const DiffusePoint *point, uint32_t key, Hemisphere *h);
 
 /**
@@ -95,9 +98,9 @@ size_t sheen_hemisphere_refine(const SheenWork *work, const DiffusePoint *point,
                                Hemisphere *h, SheenStats *stats);
 
 /**
- * Moves the vertices nearer than `near` to their predecessor on by one ray, cosine-weighted or toward a hot spot, after
- * their direct light has been added to L; what the ray finds becomes a vertex in their place. The others keep their
- * place and order.
+ * Moves vertices on by one ray, after their direct light has been added to L: those of glossy lobes along these,
+ * and those nearer than `near` to their predecessor along a ray that is cosine-weighted or toward a hot spot. What the
+ * ray finds becomes a vertex in their place. The others keep their place and order.
  * @param near  metres; INFINITY moves all
  * @return the number of vertices moved
  */

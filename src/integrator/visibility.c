@@ -286,7 +286,7 @@ static bool arrive(const SheenWork *work, const SheenEye *eye, EyeRay *r, const 
     EyeRay next = *r;
     Rgb through = rgb_gray(1.0f);
     SheenStep step = sheen_step(s, &seen.bsdf, wo, &sampler, &through, &ray, &point);
-    if (step == SHEEN_STEP_SCATTERS) return last || add_point(r, &point, false, v);
+    if (step == SHEEN_STEP_SCATTERS || step == SHEEN_STEP_TURNS) return last || add_point(r, &point, false, v);
     if (step == SHEEN_STEP_PASSES) return pass(r, s, through, list, v);
     next.competes = false;
     if (step == SHEEN_STEP_ENDS || r->depth >= SHEEN_SPECULAR_MAX) return true;

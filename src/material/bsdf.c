@@ -65,13 +65,15 @@ static float lobe_roughness(const BsdfLobe *lobe)
     }
 }
 
-bool sheen_bsdf_is_rough(const Bsdf *bsdf, float least)
+bool sheen_bsdf_is_rough(const Bsdf *bsdf, float least, float least_layer)
 {
     bool glossy = false;
     for (uint32_t i = 0; i < bsdf->n_lobes; ++i) {
         const BsdfLobe *lobe = &bsdf->lobes[i];
         const BsdfOps *ops = lobe->ops;
-        if (ops->class == SHEEN_BSDF_DELTA || ops->transmits || lobe_roughness(lobe) < least) return false;
+        if (ops->class == SHEEN_BSDF_DELTA || ops->transmits ||
+            lobe_roughness(lobe) < (ops->layer ? least_layer : least))
+            return false;
         glossy = glossy || ops->class == SHEEN_BSDF_GLOSSY;
     }
     return glossy;

@@ -90,9 +90,9 @@ unsigned sheen_bsdf_classes(const Bsdf *bsdf);
 /** @return true when the BSDF has only delta lobes: it is followed, not lit. */
 bool sheen_bsdf_is_delta(const Bsdf *bsdf);
 
-/** @return true when it is glossy and all its lobes are at least so rough (alpha), reflect, and lie upon nothing else.
- */
-bool sheen_bsdf_is_rough(const Bsdf *bsdf, float least);
+/** @return true when it is glossy and all its lobes reflect and are at least so rough (alpha), those that only ever lie
+ *  upon something else `least_layer`. */
+bool sheen_bsdf_is_rough(const Bsdf *bsdf, float least, float least_layer);
 
 /** @return true when a smooth lobe sends light to the other side: then lights on both sides matter. */
 bool sheen_bsdf_transmits(const Bsdf *bsdf);

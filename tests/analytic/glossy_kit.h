@@ -107,6 +107,7 @@ static inline SheenRenderSettings small(uint32_t bounces)
     s.integrator = SHEEN_INTEGRATOR_RADIANCE;
     s.width = s.height = 16;
     s.options.order = 7; // enough for these lobes, and the tables are soon filled
+    s.options.brdf_error = 0.05f;
     s.options.spp = 8;
     s.options.gather_rays = 256;
     return s;

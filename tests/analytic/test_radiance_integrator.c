@@ -9,9 +9,9 @@
 
 #include "analytic/glossy_kit.h"
 
-// Bounds: the rooms' means are off by up to 1.8 % (with a mirror before the board 3.2 %), of both cached integrators
-// alike, for gathers take what is glossy for diffuse; blocks by up to 5.7 % (8.1 %).
-static const double MEAN = 0.02, BLOCK = 0.08;
+// Bounds: the rooms' means are off by up to 0.9 % (with a mirror before the board 1.5 %: behind it gathers take what is
+// glossy for diffuse), of both cached integrators alike; blocks by up to 5.8 %.
+static const double MEAN = 0.012, BLOCK = 0.08;
 
 static const char *const gradient_name[] = {"stratified", "analytical", "numerical", "none"};
 
@@ -34,6 +34,27 @@ static void test_gradients(void **state)
         s.options.gradients = (SheenGradient)g;
         check(&stage, &s, &r, MEAN, BLOCK, "board", gradient_name[g]);
     }
+    sheen_film_destroy(&r.film);
+    stage_free(&stage);
+}
+
+// The ceiling beside a glossy wall sees itself in it, which is darker than what a Lambertian wall would send, and the
+// wall's upper edge shows the ceiling. Gathers, and deep ones, turn along glossy lobes: blocks are off by up to 2.3 %,
+// the mean by 0.2 %; where they take the wall for Lambertian by 4.3 % and 0.7 %.
+static void test_edge_of_a_glossy_wall(void **state)
+{
+    (void)state;
+    const Gloss gloss = {"wall", SHEEN_MATERIAL_PHONG, 0, 0, 22, 0.1f};
+    SheenBuilder *b = kit_begin();
+    add_walls(b);
+    add_lamp(b, 1.0f);
+    add_thing(b, BOARD, add_gloss(b, &gloss));
+    kit_camera(b, v3(0.3f, -0.5f, 0), v3(0.3f, 0.9f, 0.9f), v3(0, 0, 1), 0.4f);
+    Stage stage = stage_end(b, 2);
+    SheenRenderSettings s = small(8);
+    s.options.order = 10;
+    Reference r = reference(&stage, &s, 256);
+    check(&stage, &s, &r, 0.005, 0.035, "edge of a glossy wall", "radiance");
     sheen_film_destroy(&r.film);
     stage_free(&stage);
 }
@@ -112,7 +133,7 @@ static void test_seen_through_other_things(void **state)
         SheenRenderSettings s = small(8);
         s.width = s.height = 24;
         Reference r = reference(&stage, &s, 64);
-        check_both(&stage, &s, &r, before == MIRROR ? 0.05 : MEAN, name[before]);
+        check_both(&stage, &s, &r, before == MIRROR ? 0.02 : MEAN, name[before]);
         sheen_film_destroy(&r.film);
         stage_free(&stage);
     }
@@ -175,9 +196,13 @@ static void test_no_diffuse_surface(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_things_in_a_room), cmocka_unit_test(test_gradients),
-        cmocka_unit_test(test_shares),           cmocka_unit_test(test_seen_through_other_things),
-        cmocka_unit_test(test_nothing_to_cache), cmocka_unit_test(test_no_diffuse_surface),
+        cmocka_unit_test(test_things_in_a_room),
+        cmocka_unit_test(test_edge_of_a_glossy_wall),
+        cmocka_unit_test(test_gradients),
+        cmocka_unit_test(test_shares),
+        cmocka_unit_test(test_seen_through_other_things),
+        cmocka_unit_test(test_nothing_to_cache),
+        cmocka_unit_test(test_no_diffuse_surface),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
