@@ -6,6 +6,7 @@
 #include "frame_name.h"
 #include "frame_outputs.h"
 #include "manifest.h"
+#include "output.h"
 #include "run.h"
 #include "stats.h"
 
@@ -110,11 +111,6 @@ static int prepare(Animation *a)
     return report_exit_code(&run->report, status, outputs->items[0]);
 }
 
-static int exit_code(Animation *a, SheenStatus status, const char *what)
-{
-    return status == SHEEN_ERR_CANCELLED ? CLI_INTERRUPTED : report_exit_code(&a->run.report, status, what);
-}
-
 /** Renders and writes a frame. @return the exit code */
 static int render_frame(Animation *a, long number)
 {
@@ -122,9 +118,10 @@ static int render_frame(Animation *a, long number)
     double start = sheen_clock_seconds();
     SheenFilm *film = NULL;
     FrameStats *frame = &a->frames[a->stats.n_frames];
-    int code = exit_code(a, frame_maker_render(&a->maker, number, &film, frame), a->run.scene_path);
+    int code = run_exit_code(&a->run, frame_maker_render(&a->maker, number, &film, frame), a->run.scene_path);
     double rendered = sheen_clock_seconds();
-    if (code == CLI_DONE) code = exit_code(a, frame_outputs_write(&a->outputs, number, film), outputs->items[0]);
+    if (code == CLI_DONE)
+        code = run_exit_code(&a->run, frame_outputs_write(&a->outputs, number, film), outputs->items[0]);
     sheen_film_destroy(&film);
     if (code != CLI_DONE) return code;
     a->manifest.next = number + 1;
@@ -151,13 +148,17 @@ static int render_frames(Animation *a)
     long begin = a->manifest.next;
     // So that a later run does not take what lies there from before for whole.
     if (begin <= v->last && !manifest_write(&a->manifest, &v->render.outputs)) return CLI_WORLD;
-    int code = begin <= v->last ? exit_code(a, frame_maker_begin(&a->maker, begin), a->run.scene_path) : CLI_DONE;
+    int code = begin <= v->last ? frame_maker_begin(&a->maker, begin) : CLI_DONE;
     for (long frame = begin; frame <= v->last && code == CLI_DONE; ++frame) {
         progress_show_part(&a->run.show, "frame", (size_t)(frame - begin), (size_t)(v->last - begin) + 1);
         code = run_is_interrupted(&a->run) ? CLI_INTERRUPTED : render_frame(a, frame);
     }
+    if (code == CLI_DONE || code == CLI_INTERRUPTED) {
+        int kept = frame_maker_keep(&a->maker);
+        if (kept != CLI_DONE) code = kept;
+    }
     progress_show_clear(&a->run.show);
-    if (code == CLI_DONE) code = exit_code(a, frame_outputs_finish(&a->outputs), v->render.outputs.items[0]);
+    if (code == CLI_DONE) code = run_exit_code(&a->run, frame_outputs_finish(&a->outputs), v->render.outputs.items[0]);
     run_warn_nonfinite(&a->run, a->stats.render.nonfinite_samples);
     return code == CLI_DONE && a->run.report.failed ? CLI_WORLD : code;
 }
@@ -207,7 +208,8 @@ static int run_animate(int argc, char **argv)
     if (argc > 2) return cli_usage_error(&command_animate, "SCENE: '%s' is one scene file too many", argv[2]);
     if (!animate_values_check(&command_animate, v)) return CLI_USAGE;
     // Before a large scene is loaded; all frames are looked at when it is known which there are.
-    if (!frame_outputs_check_files(&v->render.outputs, v->first, v->first) || !run_check_stats(&v->render))
+    if (!frame_outputs_check_files(&v->render.outputs, v->first, v->first) || !run_check_stats(&v->render) ||
+        (v->render.cache.out && !output_check(v->render.cache.out, false)))
         return CLI_WORLD;
 
     run_begin(&a.run, argv[1]);
@@ -234,6 +236,7 @@ const Command command_animate = {
         "Frames are written as they are finished, a video when all are. The same scene, options and seed give the same "
         "files, bit by bit, at "
         "any number of threads, and after --resume.\n"
+        "With --cache-out the records outlive the run, and --cache-in takes them.\n"
         "Ctrl-C drops the frame in work and keeps those that are finished, but not the half of a video; twice stops at "
         "once.",
     .options = animate_tables,

@@ -112,14 +112,13 @@ static const Option output_options[] = {
 static const Option later_options[] = {
     {.kind = OPTION_LATER, .name = "temporal-accuracy"},
     {.kind = OPTION_LATER, .name = "max-lifespan"},
-    {.kind = OPTION_LATER, .name = "cache-in"},
-    {.kind = OPTION_LATER, .name = "cache-out"},
     {0},
 };
 
 const OptionTable animate_tables[] = {
     {output_options, 0},
     RENDER_TABLES(offsetof(AnimateValues, render)),
+    {cache_options, offsetof(AnimateValues, render.cache)},
     {later_options, 0},
     {0},
 };
@@ -162,10 +161,12 @@ static bool check_records(const Command *command, const AnimateValues *v)
                         v->static_records == SWITCH_ON ? "static-records" : "prefill");
     } else if (v->prefill == SWITCH_ON && v->static_records == SWITCH_OFF) {
         cli_usage_error(command, "--prefill: goes with --static-records on only");
+    } else if (v->static_records == SWITCH_OFF && (v->render.cache.in.n > 0 || v->render.cache.out)) {
+        cli_usage_error(command, "--cache-%s: goes with --static-records on only", v->render.cache.out ? "out" : "in");
     } else if (v->prefill_frames && (path || v->prefill == SWITCH_OFF || v->static_records == SWITCH_OFF)) {
         cli_usage_error(command, "--prefill-frames: nothing is filled before the frames here");
     } else {
-        return true;
+        return cache_values_check(command, &v->render.cache, !path);
     }
     return false;
 }

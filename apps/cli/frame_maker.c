@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frame_maker.h"
 
+#include "record_files.h"
+
+#include "base/clock.h"
+
 SheenCameraFault frame_maker_camera(const FrameMaker *m, long frame, SheenCamera *out)
 {
     if (m->path) return sheen_camera_path_at(m->path, (double)frame, out);
@@ -64,25 +68,47 @@ static SheenStatus create_session(FrameMaker *m)
     return sheen_session_create(&desc, &m->stats->render, &m->stats->build, &m->session);
 }
 
-SheenStatus frame_maker_begin(FrameMaker *m, long begin)
+/** Looks at and fills what is to be filled before the first frame. @return the library's status */
+static SheenStatus fill_before(FrameMaker *m, long begin)
 {
     static const char looking[] = "looking at frame", filling[] = "filling frame";
     const AnimateValues *v = m->values;
-    bool keeps_nothing = v->render.integrator == SHEEN_INTEGRATOR_PATH;
-    if (!keeps_nothing && v->static_records != SWITCH_ON) return SHEEN_OK;
-    SheenStatus status = create_session(m);
-    if (status != SHEEN_OK || keeps_nothing) return status;
-    status = run_pass(m, sheen_session_look, looking, v->records_first, v->records_last);
-    if (v->prefill == SWITCH_ON) {
-        if (status == SHEEN_OK) status = run_pass(m, sheen_session_fill, filling, v->records_first, v->records_last);
-        if (status == SHEEN_OK) status = sheen_session_settle(m->session, &m->stats->render);
-    } else if (status == SHEEN_OK) {
-        status = run_pass(m, fill_and_settle, filling, v->first, begin - 1);
-    }
+    SheenStatus status = run_pass(m, sheen_session_look, looking, v->records_first, v->records_last);
+    if (status != SHEEN_OK) return status;
+    if (v->prefill == SWITCH_OFF) return run_pass(m, fill_and_settle, filling, v->first, begin - 1);
+    status = run_pass(m, sheen_session_fill, filling, v->records_first, v->records_last);
+    return status == SHEEN_OK ? sheen_session_settle(m->session, &m->stats->render) : status;
+}
+
+int frame_maker_begin(FrameMaker *m, long begin)
+{
+    Run *run = m->run;
+    bool has_records = m->values->render.integrator != SHEEN_INTEGRATOR_PATH;
+    if (has_records && m->values->static_records == SWITCH_OFF) return CLI_DONE;
+    int code = run_exit_code(run, create_session(m), run->scene_path);
+    if (code != CLI_DONE || !has_records) return code;
+    code = record_files_read(run, m->session, &m->stats->from_files);
+    if (code != CLI_DONE) return code;
+    code = run_exit_code(run, fill_before(m, begin), run->scene_path);
     m->kept = count_kept(m);
     m->stats->render.records += m->kept.irradiance;
     m->stats->render.radiance_records += sum_radiance(&m->kept);
-    return status;
+    // All that will be made is there: an hour of shading cannot lose it.
+    return code == CLI_DONE && m->values->prefill == SWITCH_ON ? frame_maker_keep(m) : code;
+}
+
+int frame_maker_keep(FrameMaker *m)
+{
+    if (m->written || !m->session || !m->values->render.cache.out || record_files_count(m->session) == 0)
+        return CLI_DONE;
+    double start = sheen_clock_seconds();
+    // After Ctrl-C some have not learnt from their neighbors yet.
+    SheenStatus status = sheen_session_settle(m->session, &m->stats->render);
+    int code = report_exit_code(&m->run->report, status, m->run->scene_path);
+    if (code == CLI_DONE) code = record_files_write(m->run, m->session);
+    m->written = code == CLI_DONE;
+    m->stats->write += sheen_clock_seconds() - start;
+    return code;
 }
 
 /** Renders a frame from the session. @param stats  gets its figures, the kept records included */

@@ -23,18 +23,19 @@ typedef struct FrameMaker {
     SheenSession *session;
     RecordCounts kept;
     uint64_t deep; // records that are in the statistics
+    bool written;  // the records are in --cache-out
 } FrameMaker;
 
 /** @return the camera of a frame, or why there is none. */
 SheenCameraFault frame_maker_camera(const FrameMaker *maker, long frame, SheenCamera *out);
 
 /**
- * Makes what frames share: for all at once with --prefill, else for those before `begin`, the first that is to be
- * rendered.
+ * Makes what frames share beside what --cache-in has: for all at once with --prefill, which --cache-out gets then, else
+ * for those before `begin`, the first that is to be rendered.
  * @param maker  with the fields before `progress` set; must not move then
- * @return the library's status; frame_maker_end frees in either case
+ * @return the exit code; frame_maker_end frees in either case
  */
-SheenStatus frame_maker_begin(FrameMaker *maker, long begin);
+int frame_maker_begin(FrameMaker *maker, long begin);
 
 /**
  * Renders a frame; the next after the one before, or after those that frame_maker_begin was told of.
@@ -42,6 +43,9 @@ SheenStatus frame_maker_begin(FrameMaker *maker, long begin);
  * @param frame  gets its figures but for the time, which are added to the run's
  */
 SheenStatus frame_maker_render(FrameMaker *maker, long number, SheenFilm **film, FrameStats *frame);
+
+/** Writes the records made so far to --cache-out, if it is given and has them not. @return the exit code */
+int frame_maker_keep(FrameMaker *maker);
 
 void frame_maker_end(FrameMaker *maker);
 

@@ -51,6 +51,17 @@ static json_t *camera_json(const SheenCamera *c)
     return hash_json(hash_bytes(hash, numbers, sizeof numbers));
 }
 
+/** Adds the content of --cache-in, on which pictures depend. @return false after a message */
+static bool add_records(const Run *run, json_t *options)
+{
+    const TextList *in = &run->values->cache.in;
+    json_t *files = json_array();
+    json_object_set_new(options, "cache-in", files);
+    for (size_t i = 0; i < in->n; ++i)
+        if (json_array_append_new(files, content_json(run, in->items[i])) != 0) return false;
+    return true;
+}
+
 int manifest_make(const Run *run, const char *camera_path, const SheenCamera *camera, long first, Manifest *out)
 {
     *out = (Manifest){.first = first, .next = first};
@@ -62,6 +73,11 @@ int manifest_make(const Run *run, const char *camera_path, const SheenCamera *ca
     // Files depend on these too, though the light in them does not.
     json_object_set_new(options, "aov", options_json_value(tables, run->all_values, "aov"));
     json_object_set_new(options, "exposure", options_json_value(tables, run->all_values, "exposure"));
+    if (!add_records(run, options)) {
+        json_decref(path);
+        json_decref(options);
+        return CLI_WORLD;
+    }
     out->made_with = json_pack("{s:s, s:o, s:o, s:o, s:o}", "version", SHEEN_VERSION, "scene",
                                hash_json(sheen_scene_hash(run->scene)), "camera", camera_json(camera), "camera path",
                                path, "options", options);

@@ -25,13 +25,13 @@ static void print_line(const ProgressShow *show, double done, uint64_t records, 
     memset(bar, '#', (size_t)(done * BAR_WIDTH));
     bar[BAR_WIDTH] = '\0';
     fputs(show->live ? "\r\033[K" : "sheen: ", stderr);
-    if (show->parts) fprintf(stderr, "%s %zu of %zu, ", show->parts, show->part + 1, show->n_parts);
+    if (show->n_parts > 1) fprintf(stderr, "%s %zu of %zu, ", show->parts, show->part + 1, show->n_parts);
     if (show->live)
         fprintf(stderr, "%s [%s] %3.0f %%", show->stage, bar, 100.0 * done);
     else
         fprintf(stderr, "%s %.0f %%", show->stage, 100.0 * done);
     if (records) fprintf(stderr, ", %llu records", (unsigned long long)records);
-    if (show->parts) {
+    if (show->n_parts > 1) {
         // Parts are alike, the stages of one are not: what is left is told by the parts that are done.
         elapsed = show->last_shown - show->parts_start;
         done = (double)show->part / (double)show->n_parts;

@@ -69,6 +69,11 @@ bool run_is_interrupted(const Run *run)
     return run->interrupted && atomic_load(run->interrupted);
 }
 
+int run_exit_code(Run *run, SheenStatus status, const char *what)
+{
+    return status == SHEEN_ERR_CANCELLED ? CLI_INTERRUPTED : report_exit_code(&run->report, status, what);
+}
+
 int run_tell_interrupted(Run *run, const char *what)
 {
     progress_show_clear(&run->show);

@@ -42,6 +42,9 @@ int run_start_threads(Run *run);
 /** @return whether Ctrl-C asks to stop. */
 bool run_is_interrupted(const Run *run);
 
+/** @return the exit code of a status of the library; CLI_INTERRUPTED, without a line, when it was cancelled. */
+int run_exit_code(Run *run, SheenStatus status, const char *what);
+
 /** Says what was dropped; one line. @return CLI_INTERRUPTED */
 int run_tell_interrupted(Run *run, const char *what);
 

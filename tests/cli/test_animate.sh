@@ -36,6 +36,9 @@ refused --prefill "${A[@]}" --prefill on --static-records off
 refused --prefill-frames "${A[@]}" --prefill-frames 0-3 --prefill off
 refused --prefill-frames "${A[@]}" --prefill-frames 0-3 --static-records off
 refused --prefill-frames "${A[@]}" --prefill-frames 3-0
+refused --cache-in "${A[@]}" --cache-in a.shc --static-records off
+refused --cache-out "${A[@]}" --cache-out a.shc --integrator path
+refused --cache-out "${A[@]}" --cache-out a.exr
 for value in extrapolated interpolated nosuch; do refused --temporal "${A[@]}" --temporal $value; done
 expect 1 "${A[@]}" --camera-path nosuch.json; says '^sheen: nosuch\.json: '
 echo '{"keys": [{"frame": 1}]}' >bad.json
@@ -111,6 +114,21 @@ cp late/a.03.exr want.exr; rm late/a.02.exr late/a.03.exr
 expect 0 "${L[@]}" --resume --threads 3 --stats s.json
 [ "$(grep -c '"frame":' s.json)" -eq 2 ] || fail "the resumed run did not make two frames"
 cmp late/a.03.exr want.exr || fail "frames of a resumed run without --prefill are others"
+
+# Records outlive a run: from their file nothing is made again, and the frames are the same.
+mkdir w
+W=(animate "$SCENE" -o w/a.##.exr "${SMALL[@]}" --camera-path walk.json)
+expect 0 "${W[@]}" --cache-out w/walk.shc --quiet; silent
+cmp w/a.03.exr a.03.exr || fail "frame 3 is another with --cache-out"
+rm w/a.*
+expect 0 "${W[@]}" --cache-in w/walk.shc --quiet --stats s.json; silent
+cmp w/a.03.exr a.03.exr || fail "frame 3 is another from a file of records"
+python3 - 2>err <<'END' || fail "the statistics with --cache-in"
+import json
+s = json.load(open("s.json"))
+assert s["records"]["new"] == sum(f["new"] for f in s["frames"]) + s["records"]["deep"]
+END
+refused '--resume: --cache-in was \["' "${W[@]}" --resume
 
 # Videos, where there is a writer of them: the same bits at any number of threads.
 if "$SHEEN" animate "$SCENE" -o v.mp4 "${SMALL[@]}" --quiet 2>err; then
