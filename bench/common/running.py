@@ -17,7 +17,7 @@ SHEEN = os.environ.get("SHEEN_BIN", os.path.join(ROOT, "build", "release", "bin"
 @dataclass
 class Run:
     wall: float  # seconds
-    user: float  # seconds of processor time in the program itself, all threads
+    user: float  # seconds of processor time of all threads, in the program and in the system for it
     memory: float = 0.0  # MiB, the most that was resident
     stats: dict = field(default_factory=dict)  # of sheen --stats
 
@@ -76,7 +76,12 @@ def measure(command, cwd=None):
     if process.returncode:
         words = output.decode(errors="replace").strip().splitlines()[-3:]
         fail(f"{os.path.basename(command[0])} failed with {process.returncode}: " + " / ".join(words))
-    return Run(time.perf_counter() - start, usage.ru_utime, usage.ru_maxrss / 1024)
+    return Run(time.perf_counter() - start, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024)
+
+
+def output(command):
+    """What a program prints."""
+    return subprocess.run(command, stdout=subprocess.PIPE, check=True).stdout.decode()
 
 
 def render(scene, picture, **options):
