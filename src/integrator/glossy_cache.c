@@ -118,11 +118,44 @@ void sheen_glossy_cache_read(const SheenGlossyCache *g, SeenSurface *v, GlossyLo
     sheen_bsdf_leave_rest(&v->rest, &reading);
 }
 
+// Whether all coefficients are multiples of one colour, as those of a lobe without Fresnel's colours are.
+// @param largest  channel of the colour; @param share  out: the colour over that channel
+static bool of_one_color(size_t n, const Rgb c[], unsigned *largest, Rgb *share)
+{
+    const float rounding = 1e-5f;
+    const float *mean = &c[0].r; // of the lobe: not 0
+    *largest = mean[1] > mean[0] ? 1 : 0;
+    if (mean[2] > mean[*largest]) *largest = 2;
+    if (!(mean[*largest] > 0.0f)) return false;
+    *share = rgb_scale(c[0], 1.0f / mean[*largest]);
+    float most = rounding * mean[*largest];
+    for (size_t i = 1; i < n; ++i) {
+        Rgb off = rgb_sub(c[i], rgb_scale(*share, (&c[i].r)[*largest]));
+        if (fabsf(off.r) > most || fabsf(off.g) > most || fabsf(off.b) > most) return false;
+    }
+    return true;
+}
+
+// Of a lobe of one colour one channel is turned: a third of the time.
+static void turn_to_world(const SheenGlossyCache *g, const Frame *frame, Rgb c[])
+{
+    size_t n = basis_size(sheen_glossy_cache_order(g));
+    unsigned channel;
+    Rgb share;
+    if (!of_one_color(n, c, &channel, &share)) {
+        sheen_rotation_to_world(g->to_world, frame, 3, &c[0].r, &c[0].r);
+        return;
+    }
+    float one[SHEEN_BASIS_MAX];
+    for (size_t i = 0; i < n; ++i) one[i] = (&c[i].r)[channel];
+    sheen_rotation_to_world(g->to_world, frame, 1, one, one);
+    for (size_t i = 0; i < n; ++i) c[i] = rgb_scale(share, one[i]);
+}
+
 void sheen_glossy_cache_orient(const SheenGlossyCache *g, const SeenSurface *v, GlossyLobe *lobe)
 {
-    float *c = &lobe->coefficients[0].r;
     if (lobe->basis == SHEEN_BASIS_SH)
-        sheen_rotation_to_world(g->to_world, &v->frame, 3, c, c);
+        turn_to_world(g, &v->frame, lobe->coefficients);
     else if (v->wo_l.z < 0.0f)
         turn_behind(&v->frame, lobe->order, lobe->coefficients);
 }

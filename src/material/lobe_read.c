@@ -122,12 +122,11 @@ typedef struct Reader {
     float cos_m[SHEEN_ORDER_MAX], sin_m[SHEEN_ORDER_MAX]; // of m times the angle by which it is turned
 } Reader;
 
-/** The value of function (l, m) in the lobe's own frame. */
+/** The value of function (l, m) in the own frame of an anisotropic lobe. */
 static Rgb value_at(const Reader *r, unsigned l, int m)
 {
-    bool isotropic = r->t->node.isotropic;
     unsigned parity = parity_of(m);
-    size_t index = isotropic ? basis_zenith_index(l, (unsigned)m) : basis_index(l, m);
+    size_t index = basis_index(l, m);
     float sign = (parity & 1u ? r->flip_x : 1.0f) * (parity & 2u ? r->flip_y : 1.0f);
     // What the harmonics of the whole sphere are below the surface.
     if (r->turn->behind && r->basis == SHEEN_BASIS_SH && (((int)l + m) & 1)) sign = -sign;
@@ -138,8 +137,45 @@ static void add_band(const Reader *r, unsigned l, float scale, Rgb out[])
 {
     out[basis_index(l, 0)] = rgb_mad(out[basis_index(l, 0)], scale, value_at(r, l, 0));
     for (int m = 1; m <= (int)l; ++m) {
-        Rgb odd = r->t->node.isotropic ? rgb_gray(0.0f) : value_at(r, l, -m);
+        Rgb odd = value_at(r, l, -m);
         add_turned(out, l, m, rgb_scale(value_at(r, l, m), scale), rgb_scale(odd, scale), r->cos_m[m], r->sin_m[m]);
+    }
+}
+
+// Adds a shape of an isotropic lobe, of which there are terms of cos(m phi) alone: all that nodes hold side by side is
+// interpolated at once, as if m were even and as if it were odd.
+static void add_isotropic(const Reader *r, unsigned shape, const Choice *c, float scale, Rgb out[])
+{
+    float even[SHEEN_ZENITH_MAX], odd[SHEEN_ZENITH_MAX];
+    size_t n = (size_t)c->n * (c->n + 1) / 2;
+    for (size_t z = 0; z < n; ++z) even[z] = odd[z] = 0.0f;
+    for (unsigned i = 0; i < r->taps->n; ++i) {
+        const float *node = r->data + (size_t)r->taps->node[i] * r->t->node.size + shape * r->t->node.coefficients;
+        float a = r->taps->weight[0][i], b = r->taps->weight[1][i];
+        for (size_t z = 0; z < n; ++z) even[z] += a * node[z], odd[z] += b * node[z];
+    }
+    Rgb factor = rgb_scale(r->factors->a[shape], scale);
+    bool below = r->turn->behind && r->basis == SHEEN_BASIS_SH;
+    for (unsigned l = 0; l < c->n; ++l) {
+        Rgb band = rgb_scale(factor, l + 1 == c->n ? c->band : 1.0f);
+        for (unsigned m = 0; m <= l; ++m) {
+            float value = (m & 1u ? odd : even)[basis_zenith_index(l, m)];
+            if (below && ((l + m) & 1u)) value = -value;
+            Rgb *plus = &out[basis_index(l, (int)m)], *minus = &out[basis_index(l, -(int)m)];
+            *plus = rgb_mad(*plus, value * r->cos_m[m], band);
+            if (m) *minus = rgb_mad(*minus, value * r->sin_m[m], band);
+        }
+    }
+}
+
+// Powers of one turn, which is exact enough for the few that there are.
+static void turns(unsigned n, float angle, Reader *r)
+{
+    float c = cosf(angle), s = sinf(angle);
+    r->cos_m[0] = 1.0f, r->sin_m[0] = 0.0f;
+    for (unsigned m = 1; m < n; ++m) {
+        r->cos_m[m] = r->cos_m[m - 1] * c - r->sin_m[m - 1] * s;
+        r->sin_m[m] = r->sin_m[m - 1] * c + r->cos_m[m - 1] * s;
     }
 }
 
@@ -165,10 +201,10 @@ static Choice add_lobe(const SheenLobeTables *all, const LobeTable *t, SheenBasi
     if (!isotropic && wo.x < 0.0f) reader.flip_x = -1.0f;
     if (!isotropic && wo.y < 0.0f) reader.flip_y = -1.0f;
     float angle = turn->angle + (isotropic && across > 0.0f ? atan2f(wo.y, wo.x) : 0.0f);
-    for (unsigned m = 0; m < c.n; ++m)
-        reader.cos_m[m] = cosf((float)m * angle), reader.sin_m[m] = sinf((float)m * angle);
-    for (unsigned l = 0; l < c.n; ++l)
-        add_band(&reader, l, c.share * lobe->weight * (l + 1 == c.n ? c.band : 1.0f), out);
+    turns(c.n, angle, &reader);
+    float scale = c.share * lobe->weight;
+    for (unsigned k = 0; isotropic && k < t->node.n_shapes; ++k) add_isotropic(&reader, k, &c, scale, out);
+    for (unsigned l = 0; !isotropic && l < c.n; ++l) add_band(&reader, l, scale * (l + 1 == c.n ? c.band : 1.0f), out);
     return c;
 }
 
