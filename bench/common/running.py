@@ -91,11 +91,15 @@ def render(scene, picture, **options):
     other sizes.
     """
     options.setdefault("filter", "box")
+    return sheen("render", scene, [picture] if isinstance(picture, str) else picture, **options)
+
+
+def sheen(name, scene, pictures, **options):
+    """A command that makes pictures of a scene."""
     if not os.access(SHEEN, os.X_OK):
         fail(f"{SHEEN} is not there; build the release preset first")
-    pictures = [picture] if isinstance(picture, str) else picture
     stats = os.path.join(folder(), f"stats-{os.getpid()}.json")
-    command = [SHEEN, "render", scene, "--stats", stats, "--progress", "none", "--quiet"]
+    command = [SHEEN, name, scene, "--stats", stats, "--progress", "none", "--quiet"]
     for path in pictures:
         command += ["-o", path]
     for name, value in options.items():
