@@ -204,4 +204,17 @@ done
 expect 0 "${C[@]}" --frames 0 --seed 2 --quiet
 expect 0 "${C[@]}" --frames 0-1 --seed 2 --resume --quiet
 cmp -s c/a.001.exr d/a.001.exr && fail "a frame of an older run was taken for one of this"
+
+# One that ended before its first frame was there can be gone on with, whatever stood there before.
+"$SHEEN" "${C[@]}" --frames 0-199 --prefill-frames 0-199 --seed 3 2>err >out &
+pid=$!
+for _ in $(seq 600); do
+    grep -q '"seed": 3' c/b.*.json 2>/dev/null && break
+    sleep 0.01
+done
+kill -INT $pid
+wait $pid; code=$?
+[ $code -eq 130 ] || fail "exit code $code instead of 130 after SIGINT"
+says '^sheen: interrupted; [0-9]* frames of 200 are whole$'
+expect 0 "${C[@]}" --frames 0 --prefill-frames 0-199 --seed 3 --resume --quiet; silent
 passed
