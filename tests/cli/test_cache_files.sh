@@ -16,29 +16,29 @@ records() {
 warned() { says "^sheen: warning: $1"; }
 
 # ---- the same bits ----------------------------------------------------------------------------------------------
-for scene in "$SCENE" "$GLOSSY"; do
-    for integrator in radiance irradiance; do
-        same=("$scene" "${VIEW[@]}" --integrator $integrator)
-        rm -f ./*.shc ./*.exr
-        expect 0 render "${same[@]}" -o plain.exr; silent
-        expect 0 render "${same[@]}" -o first.exr --cache-out a.shc --threads 1 --stats stats.json; silent
-        cmp plain.exr first.exr || fail "--cache-out changes the picture"
-        [ "$(count reused)" -eq 0 ] || fail "records are reused without --cache-in"
-        expect 0 render "${same[@]}" --records-only --cache-out b.shc --threads 2; silent
-        [ "$(echo ./*.exr)" = "./first.exr ./plain.exr" ] || fail "--records-only writes a picture"
-        cmp a.shc b.shc || fail "--records-only makes other records, or other threads do"
-        n=$(records a.shc)
-        [ "$n" -gt 50 ] || fail "only $n records"
-        for threads in 1 5; do
-            expect 0 render "${same[@]}" -o later.exr --cache-in b.shc --cache-out c.shc --threads $threads \
-                --stats stats.json
-            silent
-            cmp plain.exr later.exr || fail "$integrator: a picture from a file differs at $threads threads"
-            cmp a.shc c.shc || fail "$integrator: the records have changed on their way through a picture"
-            [ "$(count reused)" -eq "$n" ] || fail "$(count reused) records are reused instead of $n"
-        done
-        n_checks=$((n_checks + 10))
+for integrator in radiance irradiance; do
+    scene=$SCENE
+    [ $integrator = radiance ] && scene=$GLOSSY
+    same=("$scene" "${VIEW[@]}" --integrator $integrator)
+    rm -f ./*.shc ./*.exr
+    expect 0 render "${same[@]}" -o plain.exr; silent
+    expect 0 render "${same[@]}" -o first.exr --cache-out a.shc --threads 1 --stats stats.json; silent
+    cmp plain.exr first.exr || fail "--cache-out changes the picture"
+    [ "$(count reused)" -eq 0 ] || fail "records are reused without --cache-in"
+    expect 0 render "${same[@]}" --records-only --cache-out b.shc --threads 2; silent
+    [ "$(echo ./*.exr)" = "./first.exr ./plain.exr" ] || fail "--records-only writes a picture"
+    cmp a.shc b.shc || fail "--records-only makes other records, or other threads do"
+    n=$(records a.shc)
+    [ "$n" -gt 50 ] || fail "only $n records"
+    for threads in 1 5; do
+        expect 0 render "${same[@]}" -o later.exr --cache-in b.shc --cache-out c.shc --threads $threads \
+            --stats stats.json
+        silent
+        cmp plain.exr later.exr || fail "$integrator: a picture from a file differs at $threads threads"
+        cmp a.shc c.shc || fail "$integrator: the records have changed on their way through a picture"
+        [ "$(count reused)" -eq "$n" ] || fail "$(count reused) records are reused instead of $n"
     done
+    n_checks=$((n_checks + 10))
 done
 # So many records that the order in which look-ups meet them shows.
 for scene in "$SCENE" "$GLOSSY"; do
@@ -102,11 +102,11 @@ refuses() {
 }
 expect 0 render "$SCENE" "${SMALL[@]}" --records-only --cache-out small.shc
 size=$(wc -c <small.shc)
-for length in 0 7 8 47 48 $((size / 2)) $((size - 1)); do
+for length in 0 8 47 $((size - 1)); do
     head -c "$length" small.shc >bad.shc
     refuses '(the file is (empty|cut off)|not a cache file|the file ends in its header)'
 done
-for place in 0 8 16 24 40 $((size / 2)) $((size - 1)); do
+for place in 0 8 16 $((size / 2)); do
     cp small.shc bad.shc
     byte=$(od -An -tu1 -j "$place" -N 1 small.shc)
     printf "\\x$(printf %x $((byte ^ 16)))" | dd of=bad.shc bs=1 seek="$place" conv=notrunc status=none
