@@ -61,7 +61,10 @@ static bool find_teachers(const Smoothing *s, uint32_t own, Teachers *out)
         const Record *r = &s->wide->records[other];
         float d2 = v3_length2(v3_sub(at->p, r->p)), cos_n = v3_dot(at->n, r->n);
         if (alike && !(cos_n > SHEEN_SAME_COS)) continue;
-        float w = other == own ? INFINITY : record_weight(minf(r->R_sure, at->R_sure), d2, cos_n);
+        // The reach of irradiance tells how far the light is alike; that of radiance is cut by gradients whose noise is
+        // that of all coefficients.
+        float R = s->radiance ? minf(r->R, at->R) : minf(r->R_sure, at->R_sure);
+        float w = other == own ? INFINITY : record_weight(R, d2, cos_n);
         float variance = (sqrf(r->error) + sqrf(share_of_bound / w)) * sqrf(contrast(s, own, other));
         if (!(variance > 0.0f)) continue;
         out->record[out->n] = other;

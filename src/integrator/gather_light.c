@@ -52,9 +52,10 @@ static void choose_guide(const SheenWork *work, const SheenDeep *deep, const Dif
     sheen_guide_choose(sheen_deep_hot_spots(deep), p->p, &h->frame, h->strata, mean, SHEEN_GATHER_ERROR, &h->guide);
 }
 
-bool sheen_gatherer_init(const SheenWork *work, const SheenDeep *deep, SheenStrata strata, SheenGatherer *out)
+bool sheen_gatherer_init(const SheenWork *work, const SheenDeep *deep, SheenStrata strata, float error,
+                         SheenGatherer *out)
 {
-    *out = (SheenGatherer){work, deep, sheen_pool_size(work->pool), NULL};
+    *out = (SheenGatherer){work, deep, error, sheen_pool_size(work->pool), NULL};
     out->scratch = calloc(out->workers, sizeof *out->scratch);
     for (unsigned i = 0; i < out->workers; ++i)
         if (!out->scratch || !sheen_hemisphere_reserve(&out->scratch[i], strata)) return false;
@@ -82,7 +83,7 @@ const Hemisphere *sheen_gather_light(const SheenGatherer *gatherer, const Diffus
     light_vertices(work, deep, h, stats);
     float enlarged = R_min / sheen_harmonic_mean((unsigned)h->cells, h->distance);
     float noisier = clampf(enlarged, 1.0f, error_growth_max);
-    if (sheen_hemisphere_refine(work, point, bounces, noisier * SHEEN_GATHER_ERROR, h, stats))
+    if (sheen_hemisphere_refine(work, point, bounces, noisier * gatherer->error, h, stats))
         light_vertices(work, deep, h, stats);
     sheen_hemisphere_add_caustics(work, point, noisier, h, stats);
     for (size_t i = 0; i < h->cells; ++i)

@@ -6,22 +6,25 @@
 #include "integrator/deep.h"
 #include "integrator/hemisphere.h"
 
-/** Relative standard error of the mean over a gather's strata that its rays aim at. */
+/** Relative standard error of the mean over a gather's strata that rays for irradiance aim at. */
 #define SHEEN_GATHER_ERROR 0.03f
 
 /** What all gathers of one kind share: where light beyond the first bounce comes from, and a buffer for each worker. */
 typedef struct SheenGatherer {
     const SheenWork *work;
     const SheenDeep *deep; // NULL when that light is traced as paths, or when there is none
+    float error;           // relative standard error of the mean over the strata that rays aim at
     unsigned workers;
     Hemisphere *scratch; // [workers], of the same strata
 } SheenGatherer;
 
 /**
  * @param strata  cosine-weighted or uniform
+ * @param error   see SheenGatherer
  * @return false when out of memory; *out is to be freed all the same
  */
-bool sheen_gatherer_init(const SheenWork *work, const SheenDeep *deep, SheenStrata strata, SheenGatherer *out);
+bool sheen_gatherer_init(const SheenWork *work, const SheenDeep *deep, SheenStrata strata, float error,
+                         SheenGatherer *out);
 void sheen_gatherer_free(SheenGatherer *gatherer);
 
 /**

@@ -16,7 +16,7 @@ SheenStatus sheen_irradiance_maker_create(const SheenWork *work, const SheenDeep
     SheenIrradianceMaker *m = calloc(1, sizeof *m);
     if (!m) return SHEEN_ERR_NOMEM;
     SheenStrata strata = sheen_strata_cosine(work->options.gather_rays);
-    if (!sheen_gatherer_init(work, deep, strata, &m->gatherer)) {
+    if (!sheen_gatherer_init(work, deep, strata, SHEEN_GATHER_ERROR, &m->gatherer)) {
         sheen_irradiance_maker_destroy(&m);
         return SHEEN_ERR_NOMEM;
     }

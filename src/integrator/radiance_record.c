@@ -14,6 +14,10 @@ struct SheenRadianceMaker {
     SheenRadianceTables *tables;
 };
 
+// What a lobe sees is a part of the strata: their mean must be better than for irradiance. Smaller errors gain nothing:
+// the rays are as many as there may be.
+static const float radiance_error = 0.01f;
+
 // A gather needs several rays for each coefficient.
 static SheenStrata strata_for(const SheenOptions *o, unsigned order)
 {
@@ -30,7 +34,8 @@ SheenStatus sheen_radiance_maker_create(const SheenWork *work, const SheenDeep *
     m->like = like;
     SheenStrata strata = strata_for(&work->options, like->order);
     SheenStatus status = sheen_radiance_tables_create(strata, like->basis, like->order, &m->tables);
-    if (status == SHEEN_OK && !sheen_gatherer_init(work, deep, strata, &m->gatherer)) status = SHEEN_ERR_NOMEM;
+    if (status == SHEEN_OK && !sheen_gatherer_init(work, deep, strata, radiance_error, &m->gatherer))
+        status = SHEEN_ERR_NOMEM;
     if (status != SHEEN_OK) sheen_radiance_maker_destroy(&m);
     *out = m;
     return status;

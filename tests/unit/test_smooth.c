@@ -10,6 +10,9 @@
 #include "base/hash.h"
 #include "cache/smooth.h"
 
+#include <math.h>
+#include <stdlib.h>
+
 enum { SIDE = 40, N = SIDE * SIDE };
 static const float SPACING = 0.1f, A = 0.2f, NOISE = 0.1f;
 static const Bounds bounds = {{-1, -1, -1}, {5, 5, 1}};
@@ -101,6 +104,73 @@ static void test_darkness_stays_dark(void **state)
     sheen_irradiance_cache_destroy(&c);
 }
 
+// Radiance records of order 2 on the same grid, whose first coefficient is noisy and rises by `slope` a metre, and
+// whose own radii were cut by their gradients.
+static SheenRadianceCache *make_radiance(float slope)
+{
+    SheenRadianceCache *c;
+    assert_int_equal(sheen_radiance_cache_create(SHEEN_BASIS_HSH, 2, false, A, false, &bounds, &c), SHEEN_OK);
+    float *light = calloc(radiance_light_floats(c), sizeof *light);
+    assert_non_null(light);
+    Frame frame = frame_from_normal(v3(0, 0, 1));
+    for (uint32_t i = 0; i < N; ++i) {
+        Vec3 p = v3(SPACING * (float)(i % SIDE), SPACING * (float)(i / SIDE), 0);
+        float R = 1.1f * SPACING / A;
+        Record r = {.p = p, .n = v3(0, 0, 1), .R = R, .R_min = R, .R_sure = 0.1f * R, .error = NOISE};
+        for (size_t k = 0; k < 3; ++k) {
+            light[k] = (1.0f + slope * p.x) * (1.0f + NOISE * normal_deviate(i));
+            light[c->stride + k] = slope * frame.t.x;
+            light[2 * c->stride + k] = slope * frame.b.x;
+        }
+        assert_int_equal(sheen_radiance_cache_insert(c, &r, light), SHEEN_OK);
+    }
+    free(light);
+    return c;
+}
+
+// @return root mean square of the relative deviation of the first coefficient
+static double radiance_deviation(const SheenRadianceCache *c, float slope)
+{
+    double squares = 0.0;
+    for (uint32_t i = 0; i < N; ++i) {
+        float L = c->light[i * radiance_light_floats(c)];
+        double off = (double)(L / (1.0f + slope * c->store->records[i].p.x)) - 1.0;
+        squares += off * off;
+    }
+    return sqrt(squares / N);
+}
+
+static void test_noise_of_radiance_goes(void **state)
+{
+    (void)state;
+    const float slopes[] = {0.0f, 0.5f};
+    SheenPool *pool;
+    assert_int_equal(sheen_pool_create(2, &pool), SHEEN_OK);
+    for (int i = 0; i < 2; ++i) {
+        SheenRadianceCache *c = make_radiance(slopes[i]);
+        double before = radiance_deviation(c, slopes[i]);
+        assert_int_equal(sheen_radiance_cache_smooth(c, 0, &bounds, pool, NULL), SHEEN_OK);
+        assert_true(radiance_deviation(c, slopes[i]) < 0.65 * before); // as of irradiance
+        sheen_radiance_cache_destroy(&c);
+    }
+    sheen_pool_destroy(&pool);
+}
+
+// Records before the first that learns stay as they are.
+static void test_settled_records_stay(void **state)
+{
+    (void)state;
+    SheenIrradianceCache *c = make_cache(NOISE, 0.5f), *same = make_cache(NOISE, 0.5f);
+    SheenPool *pool;
+    assert_int_equal(sheen_pool_create(2, &pool), SHEEN_OK);
+    assert_int_equal(sheen_irradiance_cache_smooth(c, N / 2, &bounds, pool, NULL), SHEEN_OK);
+    sheen_pool_destroy(&pool);
+    assert_memory_equal(c->light, same->light, N / 2 * sizeof *c->light);
+    assert_memory_not_equal(c->light + N / 2, same->light + N / 2, N / 2 * sizeof *c->light);
+    sheen_irradiance_cache_destroy(&c);
+    sheen_irradiance_cache_destroy(&same);
+}
+
 // A dark, small record, as in a crack, under more large bright ones than a look-up has room for: it stays dark.
 static void test_small_record_stays_itself(void **state)
 {
@@ -137,7 +207,8 @@ static void test_threads_do_not_matter(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_noise_goes_and_slope_stays), cmocka_unit_test(test_without_noise_nothing_changes),
+        cmocka_unit_test(test_noise_goes_and_slope_stays), cmocka_unit_test(test_noise_of_radiance_goes),
+        cmocka_unit_test(test_settled_records_stay),       cmocka_unit_test(test_without_noise_nothing_changes),
         cmocka_unit_test(test_darkness_stays_dark),        cmocka_unit_test(test_small_record_stays_itself),
         cmocka_unit_test(test_threads_do_not_matter),
     };
