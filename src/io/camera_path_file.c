@@ -44,7 +44,7 @@ static void warn_unknown(Reader *r, json_t *object, const char *const known[], c
         if (is_known || json_object_get(r->unknown, name) || json_object_size(r->unknown) == unknown_max) continue;
         json_object_set_new(r->unknown, name, json_true());
         JsonStep to[3] = {0};
-        memcpy(to, steps, n * sizeof *to);
+        for (size_t i = 0; i < n; ++i) to[i] = steps[i];
         to[n].member = name;
         JsonPlace at = sheen_json_place(r->text, r->size, to, n + 1);
         sheen_warn(r->log, "%s:%d:%d: '%.60s' is not known and is left out", r->name, at.line, at.column, name);
