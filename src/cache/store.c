@@ -133,15 +133,17 @@ SheenStatus sheen_store_reindex(SheenRecordStore *s)
 // The weight w - 1/a of a record, continuous where its influence ends. A record whose radius had to be enlarged to what
 // the picture resolves keeps its full weight within its own radius; in the ring beyond it a thousandth: that decides
 // only where no other record reaches. A contact's darkness would otherwise paint discs onto the open floor beside it.
+// @param R_most the largest radius of an enlarged record
 // @param cover  out: 2 for a record that reaches the point by itself, 1 where it was enlarged
-static float influence(const SheenRecordStore *s, const Record *r, float d2, float cos_n, unsigned *cover)
+static float influence(const SheenRecordStore *s, const Record *r, float R_most, float d2, float cos_n, unsigned *cover)
 {
     const float ring = 1e-3f;
-    float least = 1.0f / s->accuracy, w = record_weight(r->R, d2, cos_n) - least;
+    float least = 1.0f / s->accuracy;
     if (!record_is_enlarged(r)) {
         *cover = 2;
-        return w;
+        return record_weight(r->R, d2, cos_n) - least;
     }
+    float w = record_weight(maxf(r->R_sure, minf(r->R, R_most)), d2, cos_n) - least;
     float own = record_weight(r->R_sure, d2, cos_n) - least;
     *cover = own > 0.0f ? 2 : 1;
     return ring * minf(w, least) + maxf(own, 0.0f);
@@ -166,39 +168,53 @@ static void add_contributor(uint32_t record, float w, Contributors *out)
     out->weight_sum += w;
 }
 
+/** What is asked of the store. */
+typedef struct Query {
+    Vec3 p, n;
+    float slack, R_most;
+} Query;
+
 // Takes a record when it serves the point. @param d2  squared distance, below the square of the record's reach
-static void consider(const SheenRecordStore *s, uint32_t record, float d2, Vec3 p, Vec3 n, float slack,
-                     Contributors *out)
+static void consider(const SheenRecordStore *s, uint32_t record, float d2, const Query *q, Contributors *out)
 {
     const Record *r = &s->records[record];
     unsigned cover;
-    float cos_n = v3_dot(n, r->n), w = influence(s, r, d2, cos_n, &cover);
-    if (!(w > 0.0f) || cos_n < s->cos_min || record_in_front(r, p, n, s->accuracy, slack)) return;
+    float cos_n = v3_dot(q->n, r->n), w = influence(s, r, q->R_most, d2, cos_n, &cover);
+    if (!(w > 0.0f) || cos_n < s->cos_min || record_in_front(r, q->p, q->n, s->accuracy, q->slack)) return;
     add_contributor(record, minf(w, weight_max), out);
     out->cover += cover;
 }
 
 // The records of a block that reach the point, the newest first.
-static void consider_block(const SheenRecordStore *s, const OctreeBlock *b, Vec3 p, Vec3 n, float slack,
-                           Contributors *out)
+static void consider_block(const SheenRecordStore *s, const OctreeBlock *b, const Query *q, Contributors *out)
 {
     float d2[SHEEN_OCTREE_LANES];
-    octree_block_distances2(b, p, d2);
+    octree_block_distances2(b, q->p, d2);
     for (unsigned lanes = octree_block_holding(b, d2); lanes != 0;) {
         unsigned lane = 31u - (unsigned)__builtin_clz(lanes);
         lanes ^= 1u << lane;
-        consider(s, b->record[lane], d2[lane], p, n, slack, out);
+        consider(s, b->record[lane], d2[lane], q, out);
     }
 }
 
-void sheen_store_find(const SheenRecordStore *s, Vec3 p, Vec3 n, float slack, Contributors *out)
+static void find(const SheenRecordStore *s, const Query *q, Contributors *out)
 {
     out->n = out->cover = 0;
     out->weight_sum = 0.0f;
     const SheenOctree *t = s->octree;
-    for (OctreeWalk walk = octree_walk(t); walk.node != SHEEN_OCTREE_END; octree_descend(t, &walk, p))
+    for (OctreeWalk walk = octree_walk(t); walk.node != SHEEN_OCTREE_END; octree_descend(t, &walk, q->p))
         for (uint32_t b = t->nodes[walk.node].blocks; b; b = t->blocks[b].next)
-            consider_block(s, &t->blocks[b], p, n, slack, out);
+            consider_block(s, &t->blocks[b], q, out);
+}
+
+void sheen_store_find(const SheenRecordStore *s, Vec3 p, Vec3 n, float slack, Contributors *out)
+{
+    find(s, &(Query){p, n, slack, INFINITY}, out);
+}
+
+void sheen_store_find_near(const SheenRecordStore *s, Vec3 p, Vec3 n, float R_most, Contributors *out)
+{
+    find(s, &(Query){p, n, 0.0f, R_most}, out);
 }
 
 float sheen_store_expect_radius(const SheenRecordStore *s, Vec3 p)

@@ -68,6 +68,13 @@ typedef struct Contributors {
 void sheen_store_find(const SheenRecordStore *store, Vec3 p, Vec3 n, float slack, Contributors *out);
 
 /**
+ * The same for a picture that resolves more than the one that the records were made for: those whose radius was
+ * enlarged to what a picture resolves count with at most R_most, or with their own radius where that is more.
+ * Thread-safe.
+ */
+void sheen_store_find_near(const SheenRecordStore *store, Vec3 p, Vec3 n, float R_most, Contributors *out);
+
+/**
  * The radius R that a record at p may be expected to have: the least R_j + distance over the records that lie near it
  * in the octree, with their radii as inserted. INFINITY where there is none. Thread-safe. Source:
  * krivanek2006-making-caching-practical sec. 5.2, its inequality used as a guess.

@@ -29,16 +29,17 @@ typedef struct Waves {
 
 /** Asks whether all points are covered. */
 typedef struct Question {
+    const SheenOptions *options;
     const SheenRecordStore *store;
     const ShadingPoint *points; // [n]
     size_t n;
     atomic_bool open;
 } Question;
 
-static bool is_covered(const SheenRecordStore *store, const ShadingPoint *p)
+static bool is_covered(const SheenOptions *o, const SheenRecordStore *store, const ShadingPoint *p)
 {
     Contributors c;
-    sheen_store_find(store, p->point.p, p->point.n, 0.0f, &c);
+    sheen_store_find_near(store, p->point.p, p->point.n, record_most_enlarged(o, p->footprint), &c);
     return c.cover > 1;
 }
 
@@ -48,13 +49,13 @@ static void question_task(void *user, size_t item, unsigned worker)
     Question *q = user;
     size_t end = (item + 1) * COVER_BLOCK < q->n ? (item + 1) * COVER_BLOCK : q->n;
     for (size_t i = item * COVER_BLOCK; i < end && !atomic_load_explicit(&q->open, memory_order_relaxed); ++i)
-        if (!is_covered(q->store, &q->points[i])) atomic_store(&q->open, true);
+        if (!is_covered(q->options, q->store, &q->points[i])) atomic_store(&q->open, true);
 }
 
 SheenStatus sheen_fill_is_open(const SheenWork *work, const SheenRecordStore *store, const ShadingPoint points[],
                                size_t n, bool *open)
 {
-    Question q = {store, points, n, false};
+    Question q = {&work->options, store, points, n, false};
     *open = false;
     if (!sheen_pool_run(work->pool, (n + COVER_BLOCK - 1) / COVER_BLOCK, question_task, &q, work->cancel))
         return SHEEN_ERR_CANCELLED;
@@ -70,7 +71,7 @@ static void cover_task(void *user, size_t item, unsigned worker)
     size_t end = (item + 1) * COVER_BLOCK < w->n_open ? (item + 1) * COVER_BLOCK : w->n_open;
     for (size_t i = item * COVER_BLOCK; i < end; ++i) {
         const ShadingPoint *p = &w->points[w->open[i]];
-        w->covered[i] = w->made_at[w->open[i]] || is_covered(w->kind->store, p);
+        w->covered[i] = w->made_at[w->open[i]] || is_covered(&w->work->options, w->kind->store, p);
         if (w->covered[i]) continue;
         float most = SHEEN_REACH_MAX_PX * p->footprint;
         float radius = sheen_store_expect_radius(w->kind->store, p->point.p);

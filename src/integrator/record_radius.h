@@ -17,6 +17,13 @@ static inline float record_least_radius(const SheenOptions *o, float footprint)
     return SHEEN_REACH_MIN_PX * footprint / o->accuracy;
 }
 
+/** The largest radius that a record may have been enlarged to, to serve a point: twice what its own picture would
+ * enlarge it to. Records made from afar give way to finer ones when the camera comes near. */
+static inline float record_most_enlarged(const SheenOptions *o, float footprint)
+{
+    return 2.0f * record_least_radius(o, footprint);
+}
+
 /** Sets the radii of a record whose own is R. */
 static inline void record_set_radius(const SheenOptions *o, float footprint, float R, Record *r)
 {

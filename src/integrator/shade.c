@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "integrator/direct.h"
+#include "integrator/record_radius.h"
 
 #include <stdlib.h>
 
@@ -130,7 +131,7 @@ static bool indirect_diffuse(const SheenWork *work, const SheenIrradianceCache *
 {
     Contributors c;
     if (!cache) return false;
-    sheen_store_find(cache->store, p->point.p, p->point.n, 0.0f, &c);
+    sheen_store_find_near(cache->store, p->point.p, p->point.n, record_most_enlarged(&work->options, p->footprint), &c);
     if (c.n == 0) return false;
     Rgb E = sheen_irradiance_interpolate(cache->store, cache->light, &c, p->point.p, p->point.n);
     add_reflected(p, E, SHEEN_AOV_INDIRECT, picture, stats);
@@ -145,7 +146,7 @@ static bool indirect_glossy(const SheenWork *work, const SheenRadianceCache *cac
     const ShadingPoint *p = &g->at;
     Contributors c;
     if (!cache) return false;
-    sheen_store_find(cache->store, p->point.p, p->point.n, 0.0f, &c);
+    sheen_store_find_near(cache->store, p->point.p, p->point.n, record_most_enlarged(&work->options, p->footprint), &c);
     if (c.n == 0) return false;
     RadianceLobe lobe = {g->order, lobes + g->lobe};
     Rgb L = sheen_radiance_reflect(cache, &c, p->point.p, p->point.n, &lobe);

@@ -127,9 +127,35 @@ static void test_reindex_of_an_empty_store(void **state)
     sheen_store_destroy(&s);
 }
 
+// A record that was enlarged from 0.5 to 2: it reaches a R along the plane, less far for a picture that resolves more,
+// and never less far than its own radius.
+static void test_enlarged_records_give_way(void **state)
+{
+    (void)state;
+    const Bounds bounds = {{-1, -1, -1}, {1, 1, 1}};
+    const Vec3 n = v3(0, 0, 1);
+    const struct {
+        float R_most, reach;
+    } cases[] = {{INFINITY, 2.0f}, {3.0f, 2.0f}, {1.0f, 1.0f}, {0.1f, 0.5f}};
+    SheenRecordStore *s;
+    assert_int_equal(sheen_store_create(0.1f, false, &bounds, &s), SHEEN_OK);
+    Record r = {.n = n, .R = 2.0f, .R_min = 2.0f, .R_sure = 0.5f};
+    assert_int_equal(sheen_store_insert(s, &r), SHEEN_OK);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        Contributors within, beyond;
+        float reach = 0.1f * cases[i].reach;
+        sheen_store_find_near(s, v3(0.99f * reach, 0, 0), n, cases[i].R_most, &within);
+        sheen_store_find_near(s, v3(1.01f * reach, 0, 0), n, cases[i].R_most, &beyond);
+        assert_int_equal(within.n, 1);
+        assert_int_equal(beyond.n, 0);
+    }
+    sheen_store_destroy(&s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_enlarged_records_give_way),
         cmocka_unit_test(test_appended_records_keep_their_radii),
         cmocka_unit_test(test_reindexed_is_as_appended),
         cmocka_unit_test(test_reindex_of_an_empty_store),
