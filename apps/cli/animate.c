@@ -6,7 +6,6 @@
 #include "frame_name.h"
 #include "frame_outputs.h"
 #include "manifest.h"
-#include "output.h"
 #include "run.h"
 #include "stats.h"
 
@@ -28,13 +27,6 @@ typedef struct Animation {
     FrameStats *frames; // [stats.n_frames] of those that are whole
     RunStats stats;
 } Animation;
-
-static bool some_has_layers(const TextList *outputs)
-{
-    for (size_t i = 0; i < outputs->n; ++i)
-        if (picture_file_has_layers(outputs->items[i])) return true;
-    return false;
-}
 
 /** Reads --camera-path and decides which frames there are. @return the exit code */
 static int read_path(Animation *a, const SheenCamera *camera)
@@ -73,10 +65,9 @@ static int plan(Animation *a)
 {
     Run *run = &a->run;
     AnimateValues *v = &a->values;
-    uint32_t index;
-    if (!run_find_camera(run, &index)) return CLI_USAGE;
-    const SheenCamera *camera = &run->scene->cameras[index];
-    SheenRenderSettings settings = render_values_settings(&v->render, camera, index);
+    const SheenCamera *camera;
+    if (!run_find_camera(run, &camera)) return CLI_USAGE;
+    SheenRenderSettings settings = render_values_settings(&v->render, camera);
     int code = read_path(a, camera);
     if (code != CLI_DONE) return code;
     animate_values_resolve(v, &a->range);
@@ -178,8 +169,7 @@ static int report(Animation *a, int code)
     a->stats.load = a->run.load;
     a->stats.total = sheen_clock_seconds() - a->run.start;
     if (code == CLI_INTERRUPTED) interrupted(a);
-    int written =
-        a->values.render.stats ? run_write_stats(&a->values.render, stats_to_json(&a->run, &a->stats)) : CLI_DONE;
+    int written = stats_write(&a->run, &a->stats);
     if (code == CLI_DONE && written == CLI_DONE) print_summary(a);
     return code == CLI_DONE ? written : code;
 }
@@ -204,16 +194,15 @@ static int run_animate(int argc, char **argv)
     AnimateValues *v = &a.values;
     int code;
     if (!cli_parse(&command_animate, &argc, argv, v, &code)) return code;
-    if (argc < 2) return cli_usage_error(&command_animate, "SCENE: the scene file is missing");
-    if (argc > 2) return cli_usage_error(&command_animate, "SCENE: '%s' is one scene file too many", argv[2]);
+    code = cli_check_operand(&command_animate, argc, argv, "SCENE", "scene file");
+    if (code != CLI_DONE) return code;
     if (!animate_values_check(&command_animate, v)) return CLI_USAGE;
     // Before a large scene is loaded; all frames are looked at when it is known which there are.
-    if (!frame_outputs_check_files(&v->render.outputs, v->first, v->first) || !run_check_stats(&v->render) ||
-        (v->render.cache.out && !output_check(v->render.cache.out, false)))
+    if (!frame_outputs_check_files(&v->render.outputs, v->first, v->first) || !run_check_files(&v->render))
         return CLI_WORLD;
 
     run_begin(&a.run, argv[1]);
-    run_warn_about_layers(&a.run, some_has_layers(&v->render.outputs));
+    run_warn_about_layers(&a.run, picture_files_have_layers(&v->render.outputs));
     code = run_load(&a.run);
     if (code == CLI_DONE) code = prepare(&a);
     if (code == CLI_DONE) {

@@ -4,11 +4,6 @@
 #include "cli.h"
 #include "json_text.h"
 
-static json_t *vector_json(Vec3 v)
-{
-    return json_pack("[f, f, f]", (double)v.x, (double)v.y, (double)v.z);
-}
-
 /** Where the records are, and their radii: least, mean and largest. */
 static void add_extent(json_t *object, const SheenCachePart *part)
 {
@@ -25,7 +20,7 @@ static void add_extent(json_t *object, const SheenCachePart *part)
     }
     if (part->n == 0) return;
     json_object_set_new(object, "radius", json_pack("[f, f, f]", lo, sum / part->n, hi));
-    json_object_set_new(object, "bounds", json_pack("[o, o]", vector_json(bounds.lo), vector_json(bounds.hi)));
+    json_object_set_new(object, "bounds", json_bounds(&bounds));
 }
 
 static json_t *part_json(SheenCachePartKind kind, const SheenCachePart *part)
@@ -43,11 +38,10 @@ static json_t *part_json(SheenCachePartKind kind, const SheenCachePart *part)
 
 json_t *cache_info_json(const char *path, const SheenCacheFile *file)
 {
-    char hash[17];
-    snprintf(hash, sizeof hash, "%016llx", (unsigned long long)file->scene_hash);
-    return json_pack("{s:o, s:s, s:i, s:s, s:o, s:o, s:o, s:o}", "file", json_text(path), "kind", "cache", "version",
-                     SHEEN_CACHE_FILE_VERSION, "scene_hash", hash, "made_with", json_loads(file->about, 0, NULL),
-                     "irradiance", part_json(SHEEN_CACHE_PART_IRRADIANCE, &file->parts[SHEEN_CACHE_PART_IRRADIANCE]),
-                     "radiance_hsh", part_json(SHEEN_CACHE_PART_HSH, &file->parts[SHEEN_CACHE_PART_HSH]), "radiance_sh",
+    return json_pack("{s:o, s:s, s:i, s:o, s:o, s:o, s:o, s:o}", "file", json_text(path), "kind", "cache", "version",
+                     SHEEN_CACHE_FILE_VERSION, "scene_hash", json_hash(file->scene_hash), "made_with",
+                     json_loads(file->about, 0, NULL), "irradiance",
+                     part_json(SHEEN_CACHE_PART_IRRADIANCE, &file->parts[SHEEN_CACHE_PART_IRRADIANCE]), "radiance_hsh",
+                     part_json(SHEEN_CACHE_PART_HSH, &file->parts[SHEEN_CACHE_PART_HSH]), "radiance_sh",
                      part_json(SHEEN_CACHE_PART_SH, &file->parts[SHEEN_CACHE_PART_SH]));
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cache_options.h"
 
+#include "io/file_path.h"
+
 #include <string.h>
-#include <strings.h>
 
 const Option cache_options[] = {
     {.kind = OPTION_TEXTS,
@@ -38,8 +39,7 @@ bool cache_values_check(const Command *command, const CacheValues *v, bool has_c
     static const char no_cache[] = "--integrator path has no cache";
     if (v->in.n > 0 && !has_cache) return refuse(command, "--cache-in", no_cache);
     if (v->out && !has_cache) return refuse(command, "--cache-out", no_cache);
-    const char *dot = v->out ? strrchr(v->out, '.') : NULL;
-    if (v->out && (!dot || strcasecmp(dot, ".shc") != 0)) {
+    if (v->out && !sheen_path_has_ending(v->out, ".shc")) {
         // So that neither a picture nor a scene is replaced by mistake.
         cli_usage_error(command, "--cache-out: '%s' does not end in .shc", v->out);
         return false;

@@ -112,6 +112,12 @@ double cli_decimal(float value);
 /** Prints `sheen: MESSAGE; try 'sheen COMMAND --help'` on stderr. @param command  may be NULL. @return CLI_USAGE */
 int cli_usage_error(const Command *command, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/**
+ * Checks that a command was left one operand. @param operand  its name in the help @param what  in words
+ * @return CLI_DONE, or CLI_USAGE after a message
+ */
+int cli_check_operand(const Command *command, int argc, char **argv, const char *operand, const char *what);
+
 /** Prints `sheen: MESSAGE` on stderr. @return CLI_WORLD */
 int cli_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
 

@@ -3,8 +3,6 @@
 
 #include "record_files.h"
 
-#include "base/clock.h"
-
 SheenCameraFault frame_maker_camera(const FrameMaker *m, long frame, SheenCamera *out)
 {
     if (m->path) return sheen_camera_path_at(m->path, (double)frame, out);
@@ -29,13 +27,6 @@ static RecordCounts count_kept(const FrameMaker *m)
 {
     const SheenCaches *caches = m->session ? sheen_session_caches(m->session) : NULL;
     return caches ? sheen_caches_counts(caches) : (RecordCounts){0};
-}
-
-static uint64_t sum_radiance(const RecordCounts *n)
-{
-    uint64_t sum = 0;
-    for (int b = 0; b < SHEEN_BASIS_COUNT; ++b) sum += n->radiance[b];
-    return sum;
 }
 
 typedef SheenStatus Pass(SheenSession *session, const SheenShot *shot, SheenStats *stats);
@@ -92,7 +83,7 @@ int frame_maker_begin(FrameMaker *m, long begin)
     code = run_exit_code(run, fill_before(m, begin), run->scene_path);
     m->kept = count_kept(m);
     m->stats->render.records += m->kept.irradiance;
-    m->stats->render.radiance_records += sum_radiance(&m->kept);
+    m->stats->render.radiance_records += record_counts_radiance(&m->kept);
     // All that will be made is there: an hour of shading cannot lose it.
     return code == CLI_DONE && m->values->prefill == SWITCH_ON ? frame_maker_keep(m) : code;
 }
@@ -101,13 +92,8 @@ int frame_maker_keep(FrameMaker *m)
 {
     if (m->written || !m->session || !m->values->render.cache.out || record_files_count(m->session) == 0)
         return CLI_DONE;
-    double start = sheen_clock_seconds();
-    // After Ctrl-C some have not learnt from their neighbors yet.
-    SheenStatus status = sheen_session_settle(m->session, &m->stats->render);
-    int code = report_exit_code(&m->run->report, status, m->run->scene_path);
-    if (code == CLI_DONE) code = record_files_write(m->run, m->session);
+    int code = record_files_write(m->run, m->session, m->stats);
     m->written = code == CLI_DONE;
-    m->stats->write += sheen_clock_seconds() - start;
     return code;
 }
 
@@ -126,7 +112,7 @@ static SheenStatus render_alone(FrameMaker *m, const Aim *aim, SheenFilm **film,
     Run *run = m->run;
     SheenProgress progress = progress_show_sink(&run->show);
     SheenRenderTimes times;
-    m->settings.view = &aim->camera;
+    m->settings.camera = &aim->camera;
     SheenStatus status =
         sheen_render(run->scene, &m->settings, run->pool, run->interrupted, &progress, &run->log, film, stats, &times);
     m->stats->build += times.build;
@@ -140,13 +126,13 @@ SheenStatus frame_maker_render(FrameMaker *m, long number, SheenFilm **film, Fra
     aim_at(m, number, &aim);
     SheenStatus status = m->session ? shade(m, &aim.shot, film, &stats) : render_alone(m, &aim, film, &stats);
     if (status != SHEEN_OK) return status;
-    uint64_t before = m->kept.irradiance + sum_radiance(&m->kept);
+    uint64_t before = record_counts_all(&m->kept);
     *frame = frame_stats(number, 0.0, &stats);
     frame->added -= before;
     m->stats->reused += before;
     // The totals count a record once.
     stats.records -= m->kept.irradiance;
-    stats.radiance_records -= sum_radiance(&m->kept);
+    stats.radiance_records -= record_counts_radiance(&m->kept);
     stats.deep_records -= m->deep;
     m->kept = count_kept(m);
     if (m->session) m->deep += stats.deep_records;

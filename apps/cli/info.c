@@ -10,11 +10,11 @@
 #include "scene_options.h"
 
 #include "image/image.h"
+#include "io/file_path.h"
 #include "io/load.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 typedef struct InfoValues {
     SceneValues scene;
@@ -119,13 +119,6 @@ static json_t *cameras_json(const SheenScene *scene)
     return cameras;
 }
 
-static json_t *bounds_json(const Bounds *b)
-{
-    if (bounds_is_empty(b) || !v3_finite(b->lo) || !v3_finite(b->hi)) return json_null();
-    return json_pack("[[f, f, f], [f, f, f]]", (double)b->lo.x, (double)b->lo.y, (double)b->lo.z, (double)b->hi.x,
-                     (double)b->hi.y, (double)b->hi.z);
-}
-
 static json_t *scene_json(const char *path, const SheenScene *scene)
 {
     json_t *shapes = json_object(), *materials = json_object(), *lights = json_object();
@@ -135,7 +128,7 @@ static json_t *scene_json(const char *path, const SheenScene *scene)
     return json_pack("{s:o, s:s, s:o, s:I, s:I, s:o, s:o, s:o, s:o}", "file", json_text(path), "kind", "scene",
                      "shapes", shapes, "triangles", (json_int_t)scene->n_triangles, "instances",
                      (json_int_t)scene->n_instances, "materials", materials, "lights", lights, "cameras",
-                     cameras_json(scene), "bounds", bounds_json(&scene->bounds));
+                     cameras_json(scene), "bounds", json_bounds(&scene->bounds));
 }
 
 // ---- images -----------------------------------------------------------------------------------------------------
@@ -239,9 +232,8 @@ static int print_info(json_t *info, bool as_json)
 
 static bool ends_in(const char *path, const char *const endings[])
 {
-    const char *dot = strrchr(path, '.');
-    for (size_t i = 0; dot && endings[i]; ++i)
-        if (strcasecmp(dot, endings[i]) == 0) return true;
+    for (size_t i = 0; endings[i]; ++i)
+        if (sheen_path_has_ending(path, endings[i])) return true;
     return false;
 }
 
@@ -288,8 +280,8 @@ static int run_info(int argc, char **argv)
     InfoValues values = {.lobes = lobe_values_default()};
     int code;
     if (!cli_parse(&command_info, &argc, argv, &values, &code)) return code;
-    if (argc < 2) return cli_usage_error(&command_info, "FILE: the file is missing");
-    if (argc > 2) return cli_usage_error(&command_info, "FILE: '%s' is one file too many", argv[2]);
+    code = cli_check_operand(&command_info, argc, argv, "FILE", "file");
+    if (code != CLI_DONE) return code;
     if (!scene_values_check(&command_info, &values.scene)) return CLI_USAGE;
     if (values.brdf_order && !sheen_image_writable_format(values.brdf_order))
         return cli_usage_error(&command_info, "--brdf-order: '%s' has no ending of a picture that can be written",

@@ -41,6 +41,13 @@ int cli_usage_error(const Command *command, const char *format, ...)
     return CLI_USAGE;
 }
 
+int cli_check_operand(const Command *command, int argc, char **argv, const char *operand, const char *what)
+{
+    if (argc < 2) return cli_usage_error(command, "%s: the %s is missing", operand, what);
+    if (argc > 2) return cli_usage_error(command, "%s: '%s' is one %s too many", operand, argv[2], what);
+    return CLI_DONE;
+}
+
 int cli_error(const char *format, ...)
 {
     va_list args;

@@ -14,21 +14,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/** FNV-1a. */
-static uint64_t hash_bytes(uint64_t hash, const void *data, size_t size)
-{
-    const uint8_t *bytes = data;
-    for (size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 0x100000001b3u;
-    return hash;
-}
-static const uint64_t hash_begin = 0xcbf29ce484222325u;
-
-static json_t *hash_json(uint64_t hash)
-{
-    char text[32];
-    snprintf(text, sizeof text, "%016llx", (unsigned long long)hash);
-    return json_string(text);
-}
+#include <xxhash.h>
 
 /** @return the content of a file as a hash, a new reference; NULL after a message or when out of memory. */
 static json_t *content_json(const Run *run, const char *path)
@@ -36,7 +22,7 @@ static json_t *content_json(const Run *run, const char *path)
     uint8_t *data;
     size_t size;
     if (sheen_file_read(path, &run->log, &data, &size) != SHEEN_OK) return NULL;
-    json_t *hash = hash_json(hash_bytes(hash_begin, data, size));
+    json_t *hash = json_hash(XXH3_64bits(data, size));
     free(data);
     return hash;
 }
@@ -47,8 +33,8 @@ static json_t *camera_json(const SheenCamera *c)
     const float numbers[] = {c->fov_x,         c->aperture,      c->focus,    c->orthographic ? 1.0f : 0.0f,
                              c->cut_lo.x,      c->cut_lo.y,      c->cut_hi.x, c->cut_hi.y,
                              c->filter.radius, c->filter.stddev, c->filter.b, c->filter.c};
-    uint64_t hash = hash_bytes(hash_begin, &c->to_world, sizeof c->to_world);
-    return hash_json(hash_bytes(hash, numbers, sizeof numbers));
+    uint64_t place = XXH3_64bits(&c->to_world, sizeof c->to_world);
+    return json_hash(XXH3_64bits_withSeed(numbers, sizeof numbers, place));
 }
 
 /** Adds the content of --cache-in, on which pictures depend. @return false after a message */
@@ -79,7 +65,7 @@ int manifest_make(const Run *run, const char *camera_path, const SheenCamera *ca
         return CLI_WORLD;
     }
     out->made_with = json_pack("{s:s, s:o, s:o, s:o, s:o}", "version", SHEEN_VERSION, "scene",
-                               hash_json(sheen_scene_hash(run->scene)), "camera", camera_json(camera), "camera path",
+                               json_hash(sheen_scene_hash(run->scene)), "camera", camera_json(camera), "camera path",
                                path, "options", options);
     return out->made_with ? CLI_DONE : cli_error("%s: out of memory", run->scene_path);
 }
@@ -129,8 +115,8 @@ static int refuse_option(const Command *command, const char *path, json_t *then,
     {
         json_t *other = json_object_get(then, name);
         if (json_equal(value, other)) continue;
-        char *was = other ? json_dumps(other, JSON_ENCODE_ANY | JSON_REAL_PRECISION(9)) : NULL;
-        char *is = json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(9));
+        char *was = other ? json_value_text(other) : NULL;
+        char *is = json_value_text(value);
         int code = cli_usage_error(command, "--resume: --%s was %s in the run that %s tells of, and is %s now", name,
                                    was ? was : "not there", path, is ? is : "another");
         free(was);

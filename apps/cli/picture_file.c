@@ -5,10 +5,9 @@
 #include "options_json.h"
 
 #include "image/image.h"
+#include "io/file_path.h"
 
 #include <stdlib.h>
-#include <string.h>
-#include <strings.h>
 
 bool picture_notes_make(const Run *run, PictureNotes *notes)
 {
@@ -51,8 +50,14 @@ SheenStatus picture_file_write(const Run *run, const char *path, const SheenFilm
     return sheen_image_write(path, &view, (float)run->values->exposure, &run->log);
 }
 
-bool picture_file_has_layers(const char *path)
+static bool has_layers(const char *path)
 {
-    const char *dot = strrchr(path, '.');
-    return dot && strcasecmp(dot, ".exr") == 0;
+    return sheen_path_has_ending(path, ".exr");
+}
+
+bool picture_files_have_layers(const TextList *paths)
+{
+    for (size_t i = 0; i < paths->n; ++i)
+        if (has_layers(paths->items[i])) return true;
+    return false;
 }

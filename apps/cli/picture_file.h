@@ -20,7 +20,7 @@ void picture_notes_free(PictureNotes *notes);
 /** Writes the film with its layers and notes; PNG files by --exposure. */
 SheenStatus picture_file_write(const Run *run, const char *path, const SheenFilm *film, const PictureNotes *notes);
 
-/** @return whether the path ends in .exr, which has layers. */
-bool picture_file_has_layers(const char *path);
+/** @return whether some path ends in .exr, which has layers. */
+bool picture_files_have_layers(const TextList *paths);
 
 #endif

@@ -5,6 +5,7 @@
 #include "json_text.h"
 #include "options_json.h"
 
+#include "base/clock.h"
 #include "cache/cache_file.h"
 #include "scene/scene_hash.h"
 
@@ -15,9 +16,7 @@ uint64_t record_files_count(SheenSession *session)
     const SheenCaches *caches = sheen_session_caches(session);
     if (!caches) return 0;
     RecordCounts n = sheen_caches_counts(caches);
-    uint64_t sum = n.irradiance;
-    for (int b = 0; b < SHEEN_BASIS_COUNT; ++b) sum += n.radiance[b];
-    return sum;
+    return record_counts_all(&n);
 }
 
 /** @return what the records are made with, a new reference; NULL when out of memory. */
@@ -36,8 +35,8 @@ static void compare_options(const Run *run, const char *path, const json_t *then
     {
         json_t *other = json_object_get(then, name);
         if (!other || json_equal(value, other)) continue;
-        char *was = json_dumps(other, JSON_ENCODE_ANY | JSON_REAL_PRECISION(9));
-        char *is = json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(9));
+        char *was = json_value_text(other);
+        char *is = json_value_text(value);
         sheen_warn(&run->log, "%s: its records were made with --%s %s, which is %s now", path, name, was ? was : "?",
                    is ? is : "another");
         free(was);
@@ -101,10 +100,8 @@ int record_files_read(Run *run, SheenSession *session, uint64_t *reused)
     return code;
 }
 
-int record_files_write(Run *run, SheenSession *session)
+static int write_file(Run *run, SheenSession *session, const char *path)
 {
-    const char *path = run->values->cache.out;
-    if (!path) return CLI_DONE;
     json_t *about = about_json(run);
     char *text = about ? json_dumps(about, JSON_COMPACT) : NULL;
     json_decref(about);
@@ -116,4 +113,17 @@ int record_files_write(Run *run, SheenSession *session)
     SheenStatus status = sheen_cache_file_write(path, &contents, &run->log);
     free(text);
     return report_exit_code(&run->report, status, path);
+}
+
+int record_files_write(Run *run, SheenSession *session, RunStats *stats)
+{
+    const char *path = run->values->cache.out;
+    if (!path) return CLI_DONE;
+    double start = sheen_clock_seconds();
+    // After Ctrl-C some have not learnt from their neighbors yet.
+    SheenStatus status = sheen_session_settle(session, &stats->render);
+    int code = report_exit_code(&run->report, status, run->scene_path);
+    if (code == CLI_DONE) code = write_file(run, session, path);
+    stats->write += sheen_clock_seconds() - start;
+    return code;
 }

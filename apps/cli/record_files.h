@@ -3,7 +3,7 @@
 #ifndef SHEEN_CLI_RECORD_FILES_H
 #define SHEEN_CLI_RECORD_FILES_H
 
-#include "run.h"
+#include "stats.h"
 
 #include "render/session.h"
 
@@ -15,8 +15,9 @@
  */
 int record_files_read(Run *run, SheenSession *session, uint64_t *reused);
 
-/** Writes the session's records to --cache-out, if that is given. @return the exit code */
-int record_files_write(Run *run, SheenSession *session);
+/** Writes the session's records, settled, to --cache-out, if that is given. @param stats  its time is added
+ *  @return the exit code */
+int record_files_write(Run *run, SheenSession *session, RunStats *stats);
 
 /** @return how many records the session has. */
 uint64_t record_files_count(SheenSession *session);

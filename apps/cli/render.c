@@ -92,15 +92,7 @@ static bool check_outputs(const RenderValues *v)
 {
     for (size_t i = 0; i < v->outputs.n; ++i)
         if (!output_check(v->outputs.items[i], false)) return false;
-    if (v->cache.out && !output_check(v->cache.out, false)) return false;
-    return run_check_stats(v);
-}
-
-static bool some_has_layers(const TextList *outputs)
-{
-    for (size_t i = 0; i < outputs->n; ++i)
-        if (picture_file_has_layers(outputs->items[i])) return true;
-    return false;
+    return run_check_files(v);
 }
 
 /** Writes the film to every output. @return the library's status. */
@@ -148,9 +140,7 @@ typedef struct Work {
 
 static int write_records(Work *w)
 {
-    double start = sheen_clock_seconds();
-    int code = record_files_write(w->run, w->session);
-    w->stats->write += sheen_clock_seconds() - start;
+    int code = record_files_write(w->run, w->session, w->stats);
     w->kept = code == CLI_DONE && w->run->values->cache.out;
     return code;
 }
@@ -161,9 +151,7 @@ static int interrupted(Work *w)
     uint64_t n = w->session ? record_files_count(w->session) : 0;
     const char *path = w->run->values->cache.out;
     if (path && !w->kept && n > 0) {
-        SheenStatus status = sheen_session_settle(w->session, &w->stats->render);
-        int code = report_exit_code(&w->run->report, status, w->run->scene_path);
-        if (code == CLI_DONE) code = write_records(w);
+        int code = write_records(w);
         if (code != CLI_DONE) return code;
     }
     if (!w->kept) return run_tell_interrupted(w->run, "nothing was written");
@@ -206,14 +194,13 @@ static int make_picture(Work *w, const SheenSessionDesc *desc, SheenFilm **film)
 /** Renders the loaded scene. @param film  gets the picture */
 static int render(Run *run, RenderValues *values, FrameStats *frame, SheenFilm **film, RunStats *stats)
 {
-    uint32_t index;
-    if (!run_find_camera(run, &index)) return CLI_USAGE;
+    const SheenCamera *camera;
+    if (!run_find_camera(run, &camera)) return CLI_USAGE;
     if (run_is_interrupted(run)) return run_tell_interrupted(run, "nothing was written");
     int code = run_start_threads(run);
     if (code != CLI_DONE) return code;
     double start = sheen_clock_seconds();
-    const SheenCamera *camera = &run->scene->cameras[index];
-    SheenRenderSettings settings = render_values_settings(values, camera, index);
+    SheenRenderSettings settings = render_values_settings(values, camera);
     SheenProgress progress = progress_show_sink(&run->show);
     SheenSessionDesc desc = {run->scene,       settings.integrator, settings.options, run->pool,
                              run->interrupted, &progress,           &run->log};
@@ -236,7 +223,7 @@ static int write_all(Run *run, const SheenFilm *film, RunStats *stats)
     stats->write += sheen_clock_seconds() - start;
     stats->total = sheen_clock_seconds() - run->start;
     int code = report_exit_code(&run->report, status, film ? run->values->outputs.items[0] : run->scene_path);
-    if (code == CLI_DONE && run->values->stats) code = run_write_stats(run->values, stats_to_json(run, stats));
+    if (code == CLI_DONE) code = stats_write(run, stats);
     if (code == CLI_DONE) print_summary(run, stats);
     // The picture was whole when the signal came; that it is there does not make the run an undisturbed one.
     return code == CLI_DONE && run_is_interrupted(run) ? CLI_INTERRUPTED : code;
@@ -248,13 +235,13 @@ static int run_render(int argc, char **argv)
     Run run = {.command = &command_render, .all_values = &values, .values = &values, .start = sheen_clock_seconds()};
     int code;
     if (!cli_parse(&command_render, &argc, argv, &values, &code)) return code;
-    if (argc < 2) return cli_usage_error(&command_render, "SCENE: the scene file is missing");
-    if (argc > 2) return cli_usage_error(&command_render, "SCENE: '%s' is one scene file too many", argv[2]);
+    code = cli_check_operand(&command_render, argc, argv, "SCENE", "scene file");
+    if (code != CLI_DONE) return code;
     if (!check_values(&values)) return CLI_USAGE;
     if (!check_outputs(&values)) return CLI_WORLD;
 
     run_begin(&run, argv[1]);
-    run_warn_about_layers(&run, some_has_layers(&values.outputs));
+    run_warn_about_layers(&run, picture_files_have_layers(&values.outputs));
     FrameStats frame;
     RunStats stats = {.frames = &frame, .n_frames = 1};
     SheenFilm *film = NULL;

@@ -317,7 +317,7 @@ bool render_values_check(const Command *command, const RenderValues *values)
     return false;
 }
 
-SheenRenderSettings render_values_settings(RenderValues *values, const SheenCamera *camera, uint32_t camera_index)
+SheenRenderSettings render_values_settings(RenderValues *values, const SheenCamera *camera)
 {
     SheenOptions o = sheen_options_default();
     values->camera = camera->name;
@@ -344,7 +344,7 @@ SheenRenderSettings render_values_settings(RenderValues *values, const SheenCame
     o.seed = values->seed;
     return (SheenRenderSettings){
         .integrator = (SheenIntegrator)values->integrator,
-        .camera = camera_index,
+        .camera = camera,
         .width = values->size.width,
         .height = values->size.height,
         .aovs = values->aovs,

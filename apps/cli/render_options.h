@@ -53,7 +53,7 @@ bool render_values_check(const Command *command, const RenderValues *values);
 
 /** The library's settings, for a scene's camera; fills camera and filter, and size and spp where they are 0, of
  * *values. */
-SheenRenderSettings render_values_settings(RenderValues *values, const SheenCamera *camera, uint32_t camera_index);
+SheenRenderSettings render_values_settings(RenderValues *values, const SheenCamera *camera);
 
 /** @return the name of the integrator. */
 const char *render_integrator_name(const RenderValues *values);

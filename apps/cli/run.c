@@ -39,19 +39,20 @@ int run_load(Run *run)
     return report_exit_code(&run->report, status, run->scene_path);
 }
 
-bool run_find_camera(const Run *run, uint32_t *index)
+bool run_find_camera(const Run *run, const SheenCamera **camera)
 {
     const char *wanted = run->values->camera;
-    *index = 0;
+    *camera = &run->scene->cameras[0];
     if (!wanted) return true;
     for (uint32_t i = 0; i < run->scene->n_cameras; ++i) {
         if (strcmp(run->scene->cameras[i].name, wanted) != 0) continue;
-        *index = i;
+        *camera = &run->scene->cameras[i];
         return true;
     }
     if (strspn(wanted, "0123456789") == strlen(wanted) && strlen(wanted) < 10) {
-        *index = (uint32_t)strtoul(wanted, NULL, 10);
-        if (*index < run->scene->n_cameras) return true;
+        unsigned long index = strtoul(wanted, NULL, 10);
+        *camera = &run->scene->cameras[index < run->scene->n_cameras ? index : 0];
+        if (index < run->scene->n_cameras) return true;
     }
     cli_usage_error(run->command, "--camera: the scene has no camera '%s'; it has %u, the first is '%s'", wanted,
                     run->scene->n_cameras, run->scene->cameras[0].name);
@@ -98,19 +99,8 @@ void run_warn_about_layers(const Run *run, bool exr)
     if (v->aovs && !exr) sheen_warn(&run->log, "--aov: only .exr files have layers, and none is written");
 }
 
-bool run_check_stats(const RenderValues *values)
+bool run_check_files(const RenderValues *v)
 {
-    return !values->stats || strcmp(values->stats, "-") == 0 || output_check(values->stats, true);
-}
-
-int run_write_stats(const RenderValues *values, char *text)
-{
-    if (!values->stats) {
-        free(text);
-        return CLI_DONE;
-    }
-    if (!text) return cli_error("%s: out of memory", values->stats);
-    bool ok = output_write_text(values->stats, text);
-    free(text);
-    return ok ? CLI_DONE : CLI_WORLD;
+    if (v->cache.out && !output_check(v->cache.out, false)) return false;
+    return !v->stats || strcmp(v->stats, "-") == 0 || output_check(v->stats, true);
 }

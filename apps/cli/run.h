@@ -34,7 +34,7 @@ void run_end(Run *run);
 int run_load(Run *run);
 
 /** Finds --camera by name, then by index. @return false after a message about the command line. */
-bool run_find_camera(const Run *run, uint32_t *index);
+bool run_find_camera(const Run *run, const SheenCamera **camera);
 
 /** Starts the threads. @return the exit code */
 int run_start_threads(Run *run);
@@ -54,11 +54,7 @@ void run_warn_nonfinite(const Run *run, uint64_t samples);
 /** Warns about layers that would be black. @param exr  some output has layers */
 void run_warn_about_layers(const Run *run, bool exr);
 
-/** @return whether --stats, if given, can be written, or false after a message. */
-bool run_check_stats(const RenderValues *values);
-
-/** Writes --stats, if given. @param text  the object, from malloc, freed here; NULL when out of memory
- *  @return the exit code */
-int run_write_stats(const RenderValues *values, char *text);
+/** @return whether --cache-out and --stats, if given, can be written, or false after a message. */
+bool run_check_files(const RenderValues *values);
 
 #endif

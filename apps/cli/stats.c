@@ -3,7 +3,9 @@
 
 #include "json_text.h"
 #include "options_json.h"
+#include "output.h"
 
+#include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 
@@ -73,7 +75,8 @@ static json_t *frames_json(const RunStats *run)
     return frames;
 }
 
-char *stats_to_json(const Run *run, const RunStats *stats)
+/** @return the object as text from malloc, or NULL when out of memory. */
+static char *to_json(const Run *run, const RunStats *stats)
 {
     const SheenStats *s = &stats->render;
     const RenderValues *v = run->values;
@@ -88,4 +91,15 @@ char *stats_to_json(const Run *run, const RunStats *stats)
     char *text = object ? json_dumps(object, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
     json_decref(object);
     return text;
+}
+
+int stats_write(const Run *run, const RunStats *stats)
+{
+    const char *path = run->values->stats;
+    if (!path) return CLI_DONE;
+    char *text = to_json(run, stats);
+    if (!text) return cli_error("%s: out of memory", path);
+    bool ok = output_write_text(path, text);
+    free(text);
+    return ok ? CLI_DONE : CLI_WORLD;
 }

@@ -33,7 +33,7 @@ FrameStats frame_stats(long frame, double time, const SheenStats *stats);
  */
 void stats_sum(SheenStats *total, size_t n, const SheenStats *frame);
 
-/** @return the object as text from malloc, or NULL when out of memory. Keys never change their meaning. */
-char *stats_to_json(const Run *run, const RunStats *stats);
+/** Writes --stats, if given: one object, whose keys never change their meaning. @return the exit code */
+int stats_write(const Run *run, const RunStats *stats);
 
 #endif

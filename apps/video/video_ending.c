@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "video.h"
 
-#include <string.h>
-#include <strings.h>
+#include "io/file_path.h"
 
 bool video_has_ending(const char *path)
 {
     static const char *const endings[] = {".mp4", ".mkv", ".webm"};
-    const char *dot = strrchr(path, '.');
-    for (size_t i = 0; dot && i < sizeof endings / sizeof *endings; ++i)
-        if (strcasecmp(dot, endings[i]) == 0) return true;
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; ++i)
+        if (sheen_path_has_ending(path, endings[i])) return true;
     return false;
 }

@@ -2,6 +2,7 @@
 #include "video.h"
 
 #include "image/yuv.h"
+#include "io/file_path.h"
 
 #include <errno.h>
 #include <libavcodec/avcodec.h>
@@ -10,7 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
 
 struct Video {
@@ -39,9 +39,8 @@ static const Encoder encoders[] = {
 
 static const Encoder *encoder_of(const char *path)
 {
-    const char *dot = strrchr(path, '.');
     const Encoder *e = encoders;
-    while (*e->ending && strcasecmp(dot, e->ending) != 0) ++e;
+    while (!sheen_path_has_ending(path, e->ending)) ++e; // the last ending is empty
     return e;
 }
 

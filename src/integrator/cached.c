@@ -83,16 +83,6 @@ void sheen_cached_adopt(SheenCached *c)
     c->settled = sheen_caches_counts(&c->caches);
 }
 
-static SheenWork work_of(const SheenCached *c, const SheenView *view)
-{
-    SheenWork work = c->work;
-    work.camera = view->camera;
-    work.width = view->width;
-    work.height = view->height;
-    work.filter = view->filter;
-    return work;
-}
-
 static SheenStatus add_seeds(SheenCached *c, const SeenPoints *seen)
 {
     size_t n = c->n_seeds + seen->n_points + seen->n_glossy;
@@ -110,7 +100,7 @@ SheenStatus sheen_cached_look(SheenCached *c, const SheenView *view, SheenStats 
     enum { STRIDE = 8 }; // every eighth pixel both ways
     if (!c->indirect || c->ready) return SHEEN_OK;
     double start = sheen_clock_seconds();
-    SheenWork work = work_of(c, view);
+    SheenWork work = sheen_work_for(&c->work, view);
     SeenPoints seen = {0};
     uint32_t *ends = calloc((size_t)view->width * view->height, sizeof *ends);
     for (uint32_t y = 0; y < view->height && ends; y += STRIDE)
@@ -213,7 +203,7 @@ SheenStatus sheen_cached_fill(SheenCached *c, const SheenView *view, SheenStats 
 {
     enum { ROUNDS_MAX = 16 };
     if (!c->indirect) return SHEEN_OK;
-    SheenWork work = work_of(c, view);
+    SheenWork work = sheen_work_for(&c->work, view);
     SeenPoints seen = {0};
     double start = sheen_clock_seconds();
     progress_report(work.progress, "visibility", 0.0, 0);
@@ -239,9 +229,9 @@ static SheenStatus shade(SheenCached *c, const SheenWork *work, SheenCaches *own
                          SheenStats *stats)
 {
     SeenPoints uncovered = {0};
-    PictureCaches caches = {c->indirect ? &c->caches : NULL, own};
-    SheenStatus status = sheen_shade(work, &caches, first, picture, &uncovered, stats);
-    if (status == SHEEN_OK && c->indirect && uncovered.n_points + uncovered.n_glossy > 0) {
+    const PictureCaches caches = {&c->caches, own};
+    SheenStatus status = sheen_shade(work, c->indirect ? &caches : NULL, first, picture, &uncovered, stats);
+    if (status == SHEEN_OK && uncovered.n_points + uncovered.n_glossy > 0) {
         if (!own->irradiance) status = sheen_caches_create(work, own);
         const Target to = {own, &c->caches, 1};
         if (status == SHEEN_OK) status = fill(c, work, &to, &uncovered, stats);
@@ -254,7 +244,7 @@ static SheenStatus shade(SheenCached *c, const SheenWork *work, SheenCaches *own
 SheenStatus sheen_cached_shade(SheenCached *c, const SheenView *view, SheenFilm *film, SheenStats *stats)
 {
     const SheenOptions *o = &c->work.options;
-    SheenWork work = work_of(c, view);
+    SheenWork work = sheen_work_for(&c->work, view);
     SheenCaches own = {0};
     Picture picture;
     uint64_t more = 0;

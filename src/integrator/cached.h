@@ -9,13 +9,6 @@
 
 typedef struct SheenCached SheenCached;
 
-/** A camera and the picture that it takes; borrowed. */
-typedef struct SheenView {
-    const SheenCamera *camera;
-    uint32_t width, height;         // of the picture, may differ from the camera's own
-    const SheenPixelFilter *filter; // NULL: a box
-} SheenView;
-
 /**
  * @param work   what all views share is copied; borrows what it points to. Its view and `glossy` are not read
  * @param gloss  whether glossy light is cached where it can be

@@ -44,13 +44,10 @@ SheenStatus sheen_caches_smooth(const SheenWork *w, const RecordCounts *settled,
 
 void sheen_caches_count(const SheenCaches *c, SheenStats *stats)
 {
-    if (c->irradiance) {
-        stats->records += c->irradiance->store->n;
-        stats->cache_bytes += sheen_irradiance_cache_bytes(c->irradiance);
-    }
-    for (int b = 0; b < SHEEN_BASIS_COUNT; ++b) {
-        if (!c->radiance[b]) continue;
-        stats->radiance_records += c->radiance[b]->store->n;
-        stats->cache_bytes += sheen_radiance_cache_bytes(c->radiance[b]);
-    }
+    RecordCounts n = sheen_caches_counts(c);
+    stats->records += n.irradiance;
+    stats->radiance_records += record_counts_radiance(&n);
+    if (c->irradiance) stats->cache_bytes += sheen_irradiance_cache_bytes(c->irradiance);
+    for (int b = 0; b < SHEEN_BASIS_COUNT; ++b)
+        if (c->radiance[b]) stats->cache_bytes += sheen_radiance_cache_bytes(c->radiance[b]);
 }

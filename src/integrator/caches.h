@@ -26,6 +26,18 @@ typedef struct RecordCounts {
 } RecordCounts;
 RecordCounts sheen_caches_counts(const SheenCaches *caches);
 
+static inline uint64_t record_counts_radiance(const RecordCounts *n)
+{
+    uint64_t sum = 0;
+    for (int b = 0; b < SHEEN_BASIS_COUNT; ++b) sum += n->radiance[b];
+    return sum;
+}
+
+static inline uint64_t record_counts_all(const RecordCounts *n)
+{
+    return n->irradiance + record_counts_radiance(n);
+}
+
 /**
  * Lets the records after the first `settled` ones learn from their neighbors, see cache/smooth.h.
  * Errors: SHEEN_ERR_NOMEM.

@@ -29,7 +29,7 @@ static const float cell_per_distance = 0.2f;
 typedef struct DeepCell {
     Vec3 p, n, ng;  // the hit's vertex; p is off the surface, where rays leave; of the sky, where it shines in
     Rgb weight;     // radiance per irradiance there; black without vertex
-    bool turned;    // the vertex lies beyond a wide glossy surface, one scattering more away
+    bool turned;    // the vertex lies beyond a glossy surface, one scattering more away
     Rgb sky;        // radiance of the sky and of caustics
     Rgb direct;     // after one scattering: weight times direct irradiance, and what lamps send to glossy surfaces
     Rgb beyond;     // after two: the same of a vertex that is turned to

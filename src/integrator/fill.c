@@ -22,9 +22,9 @@ typedef struct Waves {
     float *spacing;         // [n_open] distance within which one record of the wave is enough
     uint32_t *accepted;     // the wave's new records
     size_t n_accepted;
-    Record *records;       // [n_accepted]
-    unsigned char *light;  // [n_accepted][kind->light_size]
-    uint32_t before, made; // records around the store and in it, before the wave, for keys
+    Record *records;      // [n_accepted]
+    unsigned char *light; // [n_accepted][kind->light_size]
+    uint32_t made;        // records before the wave, those around included: for keys and progress
 } Waves;
 
 /** Asks whether all points are covered. */
@@ -82,7 +82,7 @@ static void cover_task(void *user, size_t item, unsigned worker)
 static void gather_task(void *user, size_t item, unsigned worker)
 {
     Waves *w = user;
-    uint32_t key = hash_combine(w->work->options.seed ^ 0x9a7eu, w->before + w->made + (uint32_t)item);
+    uint32_t key = hash_combine(w->work->options.seed ^ 0x9a7eu, w->made + (uint32_t)item);
     w->kind->make(w->kind->maker, &w->points[w->accepted[item]], key, worker, &w->stats[worker], &w->records[item],
                   w->light + item * w->kind->light_size);
     if (worker == 0) {
@@ -158,7 +158,7 @@ SheenStatus sheen_fill_run(const SheenWork *work, const RecordKind *kind, const 
     if (n > UINT32_MAX) return SHEEN_ERR_NOMEM;
     unsigned workers = sheen_pool_size(work->pool);
     Waves w = {.work = work, .kind = kind, .points = points, .n = n, .made = kind->store->n};
-    w.before = kind->around ? kind->around->n : 0;
+    if (kind->around) w.made += kind->around->n;
     w.stats = calloc(workers, sizeof *w.stats);
     w.open = malloc(n * sizeof *w.open);
     w.covered = malloc(n);

@@ -160,8 +160,7 @@ static bool indirect_glossy(const SheenWork *work, const SheenRadianceCache *cac
 static bool indirect_light(const SheenWork *work, const PictureCaches *caches, const SeenPoints *seen, Picture *picture,
                            SeenPoints *uncovered, SheenStats *stats)
 {
-    static const SheenCaches none = {0};
-    const SheenCaches *kept = caches->kept ? caches->kept : &none, *own = caches->own ? caches->own : &none;
+    const SheenCaches *kept = caches->kept, *own = caches->own;
     for (size_t i = 0; i < seen->n_points; ++i) {
         const ShadingPoint *p = &seen->points[i];
         bool covered = indirect_diffuse(work, kept->irradiance, p, picture, stats) ||

@@ -6,7 +6,7 @@
 #include "integrator/caches.h"
 #include "integrator/visibility.h"
 
-/** What a picture reads: records that outlive it and, where these say nothing, its own. Either may be NULL. */
+/** What a picture reads: records that outlive it and, where these say nothing, its own. */
 typedef struct PictureCaches {
     const SheenCaches *kept, *own;
 } PictureCaches;

@@ -73,6 +73,24 @@ typedef struct SheenWork {
     const SheenLog *log;
 } SheenWork;
 
+/** A camera and the picture that it takes, as they are of a SheenWork; borrowed. */
+typedef struct SheenView {
+    const SheenCamera *camera;
+    uint32_t width, height;
+    const SheenPixelFilter *filter;
+} SheenView;
+
+/** @return the same work for another view. */
+static inline SheenWork sheen_work_for(const SheenWork *work, const SheenView *view)
+{
+    SheenWork w = *work;
+    w.camera = view->camera;
+    w.width = view->width;
+    w.height = view->height;
+    w.filter = view->filter;
+    return w;
+}
+
 /** A camera and the picture that it takes, ready to make rays. */
 typedef struct SheenEye {
     Vec3 origin; // of the ray through the upper left corner of the picture; the same for all but for a parallel eye

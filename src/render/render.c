@@ -22,10 +22,10 @@ SheenStatus sheen_render(const SheenScene *scene, const SheenRenderSettings *set
     *film = NULL;
     *stats = (SheenStats){0};
     *times = (SheenRenderTimes){0};
-    if (!settings->view && settings->camera >= scene->n_cameras)
-        return sheen_fail(log, SHEEN_ERR_INVALID, "camera %u: the scene has %u", settings->camera, scene->n_cameras);
+    if (!settings->camera && scene->n_cameras == 0)
+        return sheen_fail(log, SHEEN_ERR_INVALID, "%s: the scene has no camera", scene->name);
     SheenSessionDesc desc = {scene, settings->integrator, settings->options, pool, cancel, progress, log};
-    const SheenCamera *camera = settings->view ? settings->view : &scene->cameras[settings->camera];
+    const SheenCamera *camera = settings->camera ? settings->camera : &scene->cameras[0];
     SheenShot shot = {camera, settings->width, settings->height, settings->filter};
     SheenSession *session = NULL;
     SheenStatus status = sheen_session_create(&desc, stats, &times->build, &session);

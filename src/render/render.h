@@ -7,11 +7,10 @@
 
 typedef struct SheenRenderSettings {
     SheenIntegrator integrator;
-    uint32_t camera;         // index into scene->cameras
-    const SheenCamera *view; // stands in for that camera, borrowed; NULL: the scene's own
-    uint32_t width, height;  // 0: the camera's
-    unsigned aovs;           // bit 1 << SheenAov
-    SheenFilter filter;      // SHEEN_FILTER_UNSET: the camera's
+    const SheenCamera *camera; // borrowed; NULL: the scene's first
+    uint32_t width, height;    // 0: the camera's
+    unsigned aovs;             // bit 1 << SheenAov
+    SheenFilter filter;        // SHEEN_FILTER_UNSET: the camera's
     SheenOptions options;
 } SheenRenderSettings;
 
@@ -23,7 +22,7 @@ typedef struct SheenRenderTimes {
 /**
  * Builds the acceleration structure, renders, returns the film.
  * @param film  owned by the caller, NULL on failure
- * Errors: SHEEN_ERR_INVALID for a camera index or size out of range, SHEEN_ERR_NOMEM, SHEEN_ERR_CANCELLED.
+ * Errors: SHEEN_ERR_INVALID for a scene without a camera and a size out of range, SHEEN_ERR_NOMEM, SHEEN_ERR_CANCELLED.
  */
 SHEEN_NODISCARD SheenStatus sheen_render(const SheenScene *scene, const SheenRenderSettings *settings, SheenPool *pool,
                                          const atomic_bool *cancel, const SheenProgress *progress, const SheenLog *log,

@@ -7,7 +7,6 @@
 #include <stdlib.h>
 
 struct SheenSession {
-    SheenIntegrator integrator;
     SheenWork work; // without a view
     SheenLights *lights;
     SheenAccel *accel;
@@ -30,7 +29,6 @@ SheenStatus sheen_session_create(const SheenSessionDesc *d, SheenStats *stats, d
     double start = sheen_clock_seconds();
     SheenSession *s = calloc(1, sizeof *s);
     if (!s) return sheen_fail(d->log, SHEEN_ERR_NOMEM, "%s: out of memory", d->scene->name);
-    s->integrator = d->integrator;
     progress_report(d->progress, "build", 0.0, 0);
     SheenStatus status = build(d, s);
     *seconds = sheen_clock_seconds() - start;
@@ -120,16 +118,6 @@ SheenStatus sheen_session_settle(SheenSession *s, SheenStats *stats)
     return s->cached ? report(s, sheen_cached_settle(s->cached, stats)) : SHEEN_OK;
 }
 
-static SheenStatus path_render(const SheenSession *s, const SheenView *view, SheenFilm *film, SheenStats *stats)
-{
-    SheenWork work = s->work;
-    work.camera = view->camera;
-    work.width = view->width;
-    work.height = view->height;
-    work.filter = view->filter;
-    return sheen_path_render(&work, film, stats);
-}
-
 SheenStatus sheen_session_shade(SheenSession *s, const SheenShot *shot, unsigned aovs, SheenFilm **film,
                                 SheenStats *stats)
 {
@@ -137,10 +125,11 @@ SheenStatus sheen_session_shade(SheenSession *s, const SheenShot *shot, unsigned
     *film = NULL;
     SheenStatus status = aim_at(s, shot, &aim);
     if (status != SHEEN_OK) return status;
+    SheenWork work = sheen_work_for(&s->work, &aim.view);
     status = sheen_film_create(aim.view.width, aim.view.height, aovs, film);
     if (status == SHEEN_OK)
-        status = s->cached ? sheen_cached_shade(s->cached, &aim.view, *film, stats)
-                           : path_render(s, &aim.view, *film, stats);
+        status =
+            s->cached ? sheen_cached_shade(s->cached, &aim.view, *film, stats) : sheen_path_render(&work, *film, stats);
     if (status != SHEEN_OK) sheen_film_destroy(film);
     return report(s, status);
 }

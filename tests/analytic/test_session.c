@@ -62,10 +62,8 @@ static uint32_t fill(Walk *w, int shot)
 {
     RecordCounts before = sheen_caches_counts(sheen_session_caches(w->session));
     assert_int_equal(sheen_session_fill(w->session, &w->shots[shot], &w->stats), SHEEN_OK);
-    RecordCounts n = sheen_caches_counts(sheen_session_caches(w->session));
-    uint32_t added = n.irradiance - before.irradiance;
-    for (int b = 0; b < SHEEN_BASIS_COUNT; ++b) added += n.radiance[b] - before.radiance[b];
-    return added;
+    RecordCounts after = sheen_caches_counts(sheen_session_caches(w->session));
+    return (uint32_t)(record_counts_all(&after) - record_counts_all(&before));
 }
 
 static void settle(Walk *w)

@@ -39,5 +39,21 @@ refused() {
     says "^sheen: $option.*; try 'sheen( $1)? --help'\$"
     [ ! -s out ] || fail "something on stdout of: sheen $*"
 }
+# wait_for TEST: until the words are true.
+wait_for() {
+    for _ in $(seq 3000); do
+        eval "$1" && return
+        sleep 0.02
+    done
+    fail "this never came true: $1"
+}
+# end_by SIGNAL: to the program in the background, $pid, which ends as one that was interrupted.
+end_by() {
+    local got=0
+    kill "-$1" "$pid" || fail "ended before its time"
+    wait "$pid" || got=$?
+    [ $got -eq 130 ] || fail "exit code $got instead of 130 after SIG$1"
+    n_checks=$((n_checks + 1))
+}
 silent() { [ ! -s err ] || fail "something on stderr"; }
 passed() { echo "$n_checks checks passed"; }

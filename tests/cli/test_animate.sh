@@ -154,13 +154,8 @@ mkdir c d
 C=(animate "$SCENE" -o c/a.###.exr -o c/b.###.png "${SMALL[@]}" --camera-path walk.json --prefill-frames 0-3)
 "$SHEEN" "${C[@]}" --frames 0-199 2>err >out &
 pid=$!
-for _ in $(seq 600); do
-    grep -q '"next": [1-9]' c/b.*.json 2>/dev/null && break
-    sleep 0.05
-done
-kill -INT $pid
-wait $pid; code=$?
-[ $code -eq 130 ] || fail "exit code $code instead of 130 after SIGINT"
+wait_for "grep -q '\"next\": [1-9]' c/b.*.json 2>/dev/null"
+end_by INT
 says '^sheen: interrupted; [1-9][0-9]* frames of 200 are whole$'
 n=$(sed 's/^sheen: interrupted; \([0-9]*\).*/\1/' err)
 [ "$(ls c | wc -l)" -eq $((2 * n + 2)) ] || fail "$n frames are whole, but there is: $(echo c/*)"
@@ -208,13 +203,8 @@ cmp -s c/a.001.exr d/a.001.exr && fail "a frame of an older run was taken for on
 # One that ended before its first frame was there can be gone on with, whatever stood there before.
 "$SHEEN" "${C[@]}" --frames 0-199 --prefill-frames 0-199 --seed 3 2>err >out &
 pid=$!
-for _ in $(seq 600); do
-    grep -q '"seed": 3' c/b.*.json 2>/dev/null && break
-    sleep 0.01
-done
-kill -INT $pid
-wait $pid; code=$?
-[ $code -eq 130 ] || fail "exit code $code instead of 130 after SIGINT"
+wait_for "grep -q '\"seed\": 3' c/b.*.json 2>/dev/null"
+end_by INT
 says '^sheen: interrupted; [0-9]* frames of 200 are whole$'
 expect 0 "${C[@]}" --frames 0 --prefill-frames 0-199 --seed 3 --resume --quiet; silent
 passed

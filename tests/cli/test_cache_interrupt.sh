@@ -4,24 +4,14 @@
 
 VIEW=("$SCENE" --size 256x256 --progress none --verbose)
 expect 0 render "${VIEW[@]}" --size 32x24 --gather-rays 64 --bounces 1 --records-only --cache-out old.shc
-# start WORD...: a render that would take minutes, in the background. @see wait_for
+# start WORD...: a render that would take minutes, in the background.
 start() { "$SHEEN" render "${VIEW[@]}" "$@" 2>err & pid=$!; }
-# wait_for TEST: until the words are true.
-wait_for() {
-    for _ in $(seq 600); do
-        eval "$1" && return
-        sleep 0.1
-    done
-    fail "this never came true: $1"
-}
 # stop LINE: Ctrl-C, and the last line on stderr.
 stop() {
-    kill -INT $pid || fail "ended before its time"
-    wait $pid; code=$?
-    [ $code -eq 130 ] || fail "exit code $code instead of 130"
+    end_by INT
     tail -n 1 err | grep -Eq "^sheen: interrupted; $1\$" || fail "the last line is not: interrupted; $1"
     [ ! -e a.exr ] || fail "there is a picture"
-    n_checks=$((n_checks + 3))
+    n_checks=$((n_checks + 2))
 }
 records() {
     expect 0 info --json "$1"
