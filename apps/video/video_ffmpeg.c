@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "video.h"
+#include "video_writer.h"
 
 #include "image/yuv.h"
 #include "io/file_path.h"
@@ -13,7 +13,7 @@
 #include <string.h>
 #include <unistd.h>
 
-struct Video {
+struct VideoStream {
     const SheenLog *log;
     char *path, *beside; // the name, and that of the file in work
     uint32_t width, height;
@@ -44,20 +44,15 @@ static const Encoder *encoder_of(const char *path)
     return e;
 }
 
-bool video_is_available(void)
-{
-    return true;
-}
-
 /** Fails with what FFmpeg says. */
-static SheenStatus fail(const Video *v, int error)
+static SheenStatus fail(const VideoStream *v, int error)
 {
     char text[AV_ERROR_MAX_STRING_SIZE];
     av_strerror(error, text, sizeof text);
     return sheen_fail(v->log, error == AVERROR(ENOMEM) ? SHEEN_ERR_NOMEM : SHEEN_ERR_IO, "%s: %s", v->path, text);
 }
 
-static SheenStatus open_codec(Video *v, const VideoDesc *desc)
+static SheenStatus open_codec(VideoStream *v, const VideoDesc *desc)
 {
     const Encoder *encoder = encoder_of(desc->path);
     const AVCodec *codec = avcodec_find_encoder_by_name(encoder->name);
@@ -90,7 +85,7 @@ static SheenStatus open_codec(Video *v, const VideoDesc *desc)
     return error < 0 ? fail(v, error) : SHEEN_OK;
 }
 
-static SheenStatus open_file(Video *v)
+static SheenStatus open_file(VideoStream *v)
 {
     v->stream = avformat_new_stream(v->format, NULL);
     if (!v->stream) return fail(v, AVERROR(ENOMEM));
@@ -102,7 +97,7 @@ static SheenStatus open_file(Video *v)
     return error < 0 ? fail(v, error) : SHEEN_OK;
 }
 
-static SheenStatus open_frame(Video *v)
+static SheenStatus open_frame(VideoStream *v)
 {
     v->frame = av_frame_alloc();
     v->packet = av_packet_alloc();
@@ -118,16 +113,32 @@ static SheenStatus open_frame(Video *v)
     return error < 0 ? fail(v, error) : SHEEN_OK;
 }
 
-SheenStatus video_create(const VideoDesc *desc, const SheenLog *log, Video **out)
+static void destroy(VideoStream **video)
+{
+    VideoStream *v = *video;
+    if (!v) return;
+    if (v->format) avio_closep(&v->format->pb);
+    if (!v->finished && v->beside) unlink(v->beside);
+    av_packet_free(&v->packet);
+    av_frame_free(&v->frame);
+    avcodec_free_context(&v->codec);
+    avformat_free_context(v->format);
+    free(v->beside);
+    free(v->path);
+    free(v);
+    *video = NULL;
+}
+
+static SheenStatus create(const VideoDesc *desc, const SheenLog *log, VideoStream **out)
 {
     *out = NULL;
     av_log_set_level(AV_LOG_QUIET); // what is wrong goes through our log
-    Video *v = calloc(1, sizeof *v);
+    VideoStream *v = calloc(1, sizeof *v);
     size_t size = strlen(desc->path) + 32;
     if (v) v->path = strdup(desc->path);
     if (v) v->beside = malloc(size);
     if (!v || !v->path || !v->beside) {
-        video_destroy(&v);
+        destroy(&v);
         return sheen_fail(log, SHEEN_ERR_NOMEM, "%s: out of memory", desc->path);
     }
     v->log = log, v->width = desc->width, v->height = desc->height, v->exposure = desc->exposure;
@@ -143,12 +154,12 @@ SheenStatus video_create(const VideoDesc *desc, const SheenLog *log, Video **out
     if (status == SHEEN_OK)
         *out = v;
     else
-        video_destroy(&v);
+        destroy(&v);
     return status;
 }
 
 /** Sends a frame, or NULL for the end, and writes the packets that come out. */
-static SheenStatus encode(Video *v, const AVFrame *frame)
+static SheenStatus encode(VideoStream *v, const AVFrame *frame)
 {
     int error = avcodec_send_frame(v->codec, frame);
     while (error >= 0) {
@@ -165,7 +176,7 @@ static SheenStatus encode(Video *v, const AVFrame *frame)
     return fail(v, error);
 }
 
-SheenStatus video_add(Video *v, const Rgb *pixels)
+static SheenStatus add(VideoStream *v, const Rgb *pixels)
 {
     int error = av_frame_make_writable(v->frame);
     if (error < 0) return fail(v, error);
@@ -178,7 +189,7 @@ SheenStatus video_add(Video *v, const Rgb *pixels)
     return status;
 }
 
-SheenStatus video_finish(Video *v)
+static SheenStatus finish(VideoStream *v)
 {
     SheenStatus status = encode(v, NULL);
     if (status != SHEEN_OK) return status;
@@ -191,18 +202,5 @@ SheenStatus video_finish(Video *v)
     return SHEEN_OK;
 }
 
-void video_destroy(Video **video)
-{
-    Video *v = *video;
-    if (!v) return;
-    if (v->format) avio_closep(&v->format->pb);
-    if (!v->finished && v->beside) unlink(v->beside);
-    av_packet_free(&v->packet);
-    av_frame_free(&v->frame);
-    avcodec_free_context(&v->codec);
-    avformat_free_context(v->format);
-    free(v->beside);
-    free(v->path);
-    free(v);
-    *video = NULL;
-}
+extern const VideoWriter sheen_video_writer __attribute__((visibility("default")));
+const VideoWriter sheen_video_writer = {create, add, finish, destroy};
