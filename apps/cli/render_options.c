@@ -55,6 +55,7 @@ static const Choice aovs[] = {
     {"accuracy", SHEEN_AOV_ACCURACY},
     {"coverage", SHEEN_AOV_COVERAGE},
     {"error", SHEEN_AOV_ERROR},
+    {"transport", SHEEN_AOV_TRANSPORT},
     {0},
 };
 
@@ -224,8 +225,10 @@ const Option render_options[] = {
      .name = "aov",
      .argument = "NAME,...",
      .meaning = "More layers in .exr files: depth, position, normal, albedo, uv, primitive, direct, indirect, and of "
-                "the cache records (their positions as dots), accuracy (the value of A), coverage (number of "
-                "contributing records), error (estimated interpolation error).",
+                "the cache records (as dots; irradiance white, radiance orange), accuracy (the value of A), coverage "
+                "(number of contributing records), error (estimated interpolation error, relative) and transport (what "
+                "indirect light was asked of: radiance records red, irradiance records green, rays followed along "
+                "mirrors, glass and sampled gloss blue).",
      .standard = "none",
      .example = "--aov depth,normal,indirect",
      .choices = aovs,

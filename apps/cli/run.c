@@ -91,8 +91,8 @@ void run_warn_nonfinite(const Run *run, uint64_t samples)
 
 void run_warn_about_layers(const Run *run, bool exr)
 {
-    static const unsigned of_cache =
-        1u << SHEEN_AOV_RECORDS | 1u << SHEEN_AOV_ACCURACY | 1u << SHEEN_AOV_COVERAGE | 1u << SHEEN_AOV_ERROR;
+    static const unsigned of_cache = 1u << SHEEN_AOV_RECORDS | 1u << SHEEN_AOV_ACCURACY | 1u << SHEEN_AOV_COVERAGE |
+                                     1u << SHEEN_AOV_ERROR | 1u << SHEEN_AOV_TRANSPORT;
     const RenderValues *v = run->values;
     if (v->aovs & of_cache && v->integrator == SHEEN_INTEGRATOR_PATH)
         sheen_warn(&run->log, "--aov: the path integrator has no cache; the layers of the cache are black");

@@ -4,12 +4,19 @@
 #include <stdlib.h>
 
 const SheenAovInfo sheen_aov_info[SHEEN_AOV_COUNT] = {
-    [SHEEN_AOV_DEPTH] = {"depth", 1, "Z"},       [SHEEN_AOV_POSITION] = {"position", 3, "XYZ"},
-    [SHEEN_AOV_NORMAL] = {"normal", 3, "XYZ"},   [SHEEN_AOV_ALBEDO] = {"albedo", 3, "RGB"},
-    [SHEEN_AOV_UV] = {"uv", 3, "UVW"},           [SHEEN_AOV_PRIMITIVE] = {"primitive", 3, "XYZ"},
-    [SHEEN_AOV_DIRECT] = {"direct", 3, "RGB"},   [SHEEN_AOV_INDIRECT] = {"indirect", 3, "RGB"},
-    [SHEEN_AOV_RECORDS] = {"records", 3, "RGB"}, [SHEEN_AOV_ACCURACY] = {"accuracy", 1, "V"},
-    [SHEEN_AOV_COVERAGE] = {"coverage", 1, "V"}, [SHEEN_AOV_ERROR] = {"error", 1, "V"},
+    [SHEEN_AOV_DEPTH] = {"depth", 1, "Z"},
+    [SHEEN_AOV_POSITION] = {"position", 3, "XYZ"},
+    [SHEEN_AOV_NORMAL] = {"normal", 3, "XYZ"},
+    [SHEEN_AOV_ALBEDO] = {"albedo", 3, "RGB"},
+    [SHEEN_AOV_UV] = {"uv", 3, "UVW"},
+    [SHEEN_AOV_PRIMITIVE] = {"primitive", 3, "XYZ"},
+    [SHEEN_AOV_DIRECT] = {"direct", 3, "RGB"},
+    [SHEEN_AOV_INDIRECT] = {"indirect", 3, "RGB"},
+    [SHEEN_AOV_RECORDS] = {"records", 3, "RGB"},
+    [SHEEN_AOV_ACCURACY] = {"accuracy", 1, "V"},
+    [SHEEN_AOV_COVERAGE] = {"coverage", 1, "V"},
+    [SHEEN_AOV_ERROR] = {"error", 1, "V"},
+    [SHEEN_AOV_TRANSPORT] = {"transport", 3, "RGB"},
 };
 
 SheenStatus sheen_film_create(uint32_t width, uint32_t height, unsigned aovs, SheenFilm **out)

@@ -18,10 +18,15 @@ typedef enum SheenAov {
     SHEEN_AOV_PRIMITIVE, // shape, triangle and instance indices of the pixel's first sample
     SHEEN_AOV_DIRECT,    // emitted, specular and direct light: the colour less `indirect`
     SHEEN_AOV_INDIRECT,  // light from the cache, or of paths with more than one scattering
-    SHEEN_AOV_RECORDS,   // positions of the cache's records drawn as dots
-    SHEEN_AOV_ACCURACY,  // the value of a of the contributing records
-    SHEEN_AOV_COVERAGE,  // number of contributing records
-    SHEEN_AOV_ERROR,     // estimated interpolation error, relative
+    SHEEN_AOV_RECORDS,   // the cache's records as dots: irradiance records white, radiance records orange
+    // Means over the shading points of a pixel's samples that records serve, each counting as one; 0 without any:
+    SHEEN_AOV_ACCURACY, // the value of a of the contributing records
+    SHEEN_AOV_COVERAGE, // number of contributing records
+    SHEEN_AOV_ERROR,    // estimated interpolation error, relative
+    // Shares of a pixel's indirect light by where it was asked for, whatever came of it: of radiance records (red), of
+    // irradiance records (green), and by following a ray along a mirror, glass or a sampled glossy lobe (blue). Each
+    // question counts as one; 0 where nothing was asked.
+    SHEEN_AOV_TRANSPORT,
     SHEEN_AOV_COUNT
 } SheenAov;
 

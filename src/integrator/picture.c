@@ -6,9 +6,12 @@
 bool sheen_picture_create(const SheenWork *work, SheenFilm *film, Picture *out)
 {
     size_t n = (size_t)film->width * film->height;
+    bool of_records = film->aov[SHEEN_AOV_RECORDS] || film->aov[SHEEN_AOV_ACCURACY] || film->aov[SHEEN_AOV_COVERAGE] ||
+                      film->aov[SHEEN_AOV_ERROR];
     *out = (Picture){film, work->options.spp, malloc(n * sizeof *out->samples),
-                     calloc(n * SHEEN_NOISE_GROUPS, sizeof *out->groups)};
-    if (!out->samples || !out->groups) {
+                     calloc(n * SHEEN_NOISE_GROUPS, sizeof *out->groups),
+                     of_records ? calloc(n, sizeof *out->served) : NULL};
+    if (!out->samples || !out->groups || (of_records && !out->served)) {
         sheen_picture_free(out);
         return false;
     }
@@ -20,6 +23,7 @@ void sheen_picture_free(Picture *picture)
 {
     free(picture->samples);
     free(picture->groups);
+    free(picture->served);
     *picture = (Picture){0};
 }
 
@@ -122,17 +126,42 @@ bool sheen_picture_plan(float noise, Picture *picture, uint64_t *more)
     return ok;
 }
 
+// What a pixel's sum in a layer is to be divided by; 0 where there is no sum.
+static float divisor(const Picture *picture, SheenAov aov, size_t pixel)
+{
+    const float *px = picture->film->aov[aov] + pixel * sheen_aov_info[aov].n_channels;
+    switch (aov) {
+    case SHEEN_AOV_PRIMITIVE: // of the first sample alone
+        return 1.0f;
+    case SHEEN_AOV_ACCURACY:
+    case SHEEN_AOV_COVERAGE:
+    case SHEEN_AOV_ERROR:
+        return (float)picture->served[pixel];
+    case SHEEN_AOV_TRANSPORT:
+        return px[0] + px[1] + px[2];
+    default:
+        return (float)picture->samples[pixel];
+    }
+}
+
+static void average_layer(const Picture *picture, SheenAov aov)
+{
+    SheenFilm *film = picture->film;
+    size_t n = (size_t)film->width * film->height;
+    unsigned n_channels = sheen_aov_info[aov].n_channels;
+    float most = aov == SHEEN_AOV_RECORDS ? 1.0f : INFINITY; // a sample's ways may each see a dot
+    for (size_t i = 0; i < n; ++i) {
+        float over = divisor(picture, aov, i), scale = over > 0.0f ? 1.0f / over : 0.0f;
+        float *px = film->aov[aov] + i * n_channels;
+        for (unsigned c = 0; c < n_channels; ++c) px[c] = minf(px[c] * scale, most);
+    }
+}
+
 void sheen_picture_average(Picture *picture)
 {
     SheenFilm *film = picture->film;
     size_t n = (size_t)film->width * film->height;
-    for (size_t i = 0; i < n; ++i) {
-        float scale = 1.0f / (float)picture->samples[i];
-        film->color[i] = rgb_scale(film->color[i], scale);
-        for (int a = 0; a < SHEEN_AOV_COUNT; ++a) {
-            unsigned n_channels = sheen_aov_info[a].n_channels;
-            if (!film->aov[a] || a == SHEEN_AOV_PRIMITIVE) continue; // of the first sample alone
-            for (unsigned c = 0; c < n_channels; ++c) film->aov[a][i * n_channels + c] *= scale;
-        }
-    }
+    for (size_t i = 0; i < n; ++i) film->color[i] = rgb_scale(film->color[i], 1.0f / (float)picture->samples[i]);
+    for (int a = 0; a < SHEEN_AOV_COUNT; ++a)
+        if (film->aov[a]) average_layer(picture, (SheenAov)a);
 }

@@ -17,6 +17,7 @@ typedef struct Picture {
     uint32_t spp;      // first samples of each pixel
     uint32_t *samples; // [pixels] samples of each, the first included
     float *groups;     // [pixels][SHEEN_NOISE_GROUPS] luminance of groups of the first samples
+    uint32_t *served;  // [pixels] shading points that records serve; NULL where no layer of them is wanted
 } Picture;
 
 /** @return false when out of memory */
@@ -35,7 +36,7 @@ void sheen_picture_add(Picture *picture, uint32_t pixel, uint32_t sample, Rgb va
  */
 bool sheen_picture_plan(float noise, Picture *picture, uint64_t *more);
 
-/** Turns the sums into means. */
+/** Turns the sums into means: over samples, over the shading points served, or into shares; see SheenAov. */
 void sheen_picture_average(Picture *picture);
 
 #endif

@@ -11,6 +11,7 @@ typedef struct ShadingPoint {
     DiffusePoint point;
     Rgb throughput;  // of the mirrors and panes on the way, over the chance of the way; times what the sample counts
                      // for under the pixel's filter, which may be negative
+    Vec3 toward;     // unit, along which it was seen
     float footprint; // side of a pixel's square at this distance, metres
     uint32_t pixel;  // y * width + x
     uint32_t sample; // sample of the pixel

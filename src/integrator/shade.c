@@ -106,23 +106,45 @@ static bool direct_light(const SheenWork *work, Shader *s, Picture *picture)
     return true;
 }
 
+/** Records of one kind, as the layers of the cache tell them apart. */
+typedef struct RecordLook {
+    Rgb dot, transport;
+} RecordLook;
+static const RecordLook irradiance_look = {{1.0f, 1.0f, 1.0f}, {0.0f, 1.0f, 0.0f}};
+static const RecordLook radiance_look = {{1.0f, 0.5f, 0.0f}, {1.0f, 0.0f, 0.0f}};
+
+// Draws the dots of records, round as they are seen: not those along glossy reflections, which would be blurred, nor
+// the faint ones in the reflections of glass.
+static void draw_dots(const SheenRecordStore *store, const ShadingPoint *p, const Contributors *c, Rgb color,
+                      SheenFilm *film)
+{
+    const float radius = 1.25f;    // pixels
+    const float brightest = 0.25f; // the least part of the light that a way carries
+    if (p->gathered || !(rgb_max(p->throughput) > brightest)) return;
+    bool dot = false;
+    for (unsigned i = 0; i < c->n && !dot; ++i) {
+        Vec3 d = v3_sub(p->point.p, store->records[c->record[i]].p);
+        dot = v3_length2(d) - sqrf(v3_dot(d, p->toward)) < sqrf(radius * p->footprint);
+    }
+    if (dot) film_add(film, SHEEN_AOV_RECORDS, p->pixel % film->width, p->pixel / film->width, color);
+}
+
 // The layers that show the cache at work. The estimate of the relative error is the contributors' 1/w, the split-sphere
 // bound, in the mean of the interpolation.
-static void add_cache_layers(const SheenWork *work, const SheenRecordStore *store, const ShadingPoint *p,
-                             const Contributors *c, SheenFilm *film)
+static void add_cache_layers(const SheenRecordStore *store, const ShadingPoint *p, const Contributors *c,
+                             const RecordLook *look, Picture *picture)
 {
-    uint32_t x = p->pixel % work->width, y = p->pixel / work->width;
+    SheenFilm *film = picture->film;
+    uint32_t x = p->pixel % film->width, y = p->pixel / film->width;
+    film_add(film, SHEEN_AOV_TRANSPORT, x, y, look->transport);
+    if (!picture->served) return;
     float error = 0.0f;
-    bool dot = false;
-    for (unsigned i = 0; i < c->n; ++i) {
-        error += c->weight[i] / (c->weight[i] + 1.0f / store->accuracy);
-        Vec3 d = v3_sub(p->point.p, store->records[c->record[i]].p);
-        dot = dot || v3_length2(d) < sqrf(1.5f * p->footprint);
-    }
+    for (unsigned i = 0; i < c->n; ++i) error += c->weight[i] / (c->weight[i] + 1.0f / store->accuracy);
     film_add(film, SHEEN_AOV_COVERAGE, x, y, rgb_gray((float)c->n));
     film_add(film, SHEEN_AOV_ACCURACY, x, y, rgb_gray(store->accuracy));
     film_add(film, SHEEN_AOV_ERROR, x, y, rgb_gray(error / c->weight_sum));
-    if (dot) film_add(film, SHEEN_AOV_RECORDS, x, y, rgb_gray(1.0f));
+    ++picture->served[p->pixel];
+    draw_dots(store, p, c, look->dot, film);
 }
 
 // @param cache  may be NULL @return false where its records say nothing
@@ -135,7 +157,7 @@ static bool indirect_diffuse(const SheenWork *work, const SheenIrradianceCache *
     if (c.n == 0) return false;
     Rgb E = sheen_irradiance_interpolate(cache->store, cache->light, &c, p->point.p, p->point.n);
     add_reflected(p, E, SHEEN_AOV_INDIRECT, picture, stats);
-    add_cache_layers(work, cache->store, p, &c, picture->film);
+    add_cache_layers(cache->store, p, &c, &irradiance_look, picture);
     return true;
 }
 
@@ -151,7 +173,7 @@ static bool indirect_glossy(const SheenWork *work, const SheenRadianceCache *cac
     RadianceLobe lobe = {g->order, lobes + g->lobe};
     Rgb L = sheen_radiance_reflect(cache, &c, p->point.p, p->point.n, &lobe);
     sheen_picture_add(picture, p->pixel, p->sample, rgb_mul(p->throughput, L), SHEEN_AOV_INDIRECT, stats);
-    add_cache_layers(work, cache->store, p, &c, picture->film);
+    add_cache_layers(cache->store, p, &c, &radiance_look, picture);
     return true;
 }
 

@@ -118,7 +118,7 @@ static SheenSampler sampler_of(const SheenWork *work, const EyeRay *r)
     return sampler_make(key, r->sample);
 }
 
-// Sends a ray on with the i-th way of its branching. @return false when out of memory
+// Sends a ray on with the i-th way of its branching, and counts that. @return false when out of memory
 static bool send(const EyeRay *r, const Ray *ray, Rgb weight, uint32_t i, EyeRay *next, int list, Visibility *v)
 {
     next->throughput = rgb_mul(r->throughput, weight);
@@ -126,6 +126,9 @@ static bool send(const EyeRay *r, const Ray *ray, Rgb weight, uint32_t i, EyeRay
     next->ray = *ray;
     next->branch = 2 * r->branch + i;
     next->depth = r->depth + 1;
+    SheenFilm *film = v->film;
+    if (film)
+        film_add(film, SHEEN_AOV_TRANSPORT, r->pixel % film->width, r->pixel / film->width, rgb(0.0f, 0.0f, 1.0f));
     return push_ray(v, list, next);
 }
 
@@ -203,8 +206,15 @@ static bool send_glossy(const SheenWork *work, const EyeRay *r, const SeenSurfac
 
 static ShadingPoint shading_point(const EyeRay *r, const DiffusePoint *point, bool lit)
 {
-    return (ShadingPoint){
-        *point, rgb_scale(r->throughput, r->weight), r->footprint, r->pixel, r->sample, r->branch, lit, r->gathered};
+    return (ShadingPoint){.point = *point,
+                          .throughput = rgb_scale(r->throughput, r->weight),
+                          .toward = r->ray.d,
+                          .footprint = r->footprint,
+                          .pixel = r->pixel,
+                          .sample = r->sample,
+                          .branch = r->branch,
+                          .lit = lit,
+                          .gathered = r->gathered};
 }
 
 static bool add_point(const EyeRay *r, const DiffusePoint *point, bool lit, Visibility *v)
@@ -297,6 +307,7 @@ bool sheen_visibility_trace(const SheenWork *work, const Tile *tile, SampleRange
                             SheenStats *stats)
 {
     seen_clear(&v->seen);
+    v->film = picture ? picture->film : NULL;
     SheenEye eye = sheen_eye(work->camera, work->width, work->height);
     if (!push_camera_rays(work, &eye, tile, range, v)) return false;
     stats->rays_camera += v->n_rays[0];

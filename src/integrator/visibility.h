@@ -41,6 +41,7 @@ typedef struct SampleRange {
 typedef struct Visibility {
     SeenPoints seen;
     // scratch
+    SheenFilm *film; // whose layer counts the rays that are followed; may be NULL
     GlossyLobe lobe;
     EyeRay *rays[2];
     size_t n_rays[2], rays_capacity[2];

@@ -218,7 +218,7 @@ static void test_layers(void **state)
             assert_true(fabsf(layer(film, SHEEN_AOV_DEPTH, x, y, 0) - d) < 0.005f * d);
         }
     }
-    for (int a = SHEEN_AOV_RECORDS; a <= SHEEN_AOV_ERROR; ++a)
+    for (int a = SHEEN_AOV_RECORDS; a <= SHEEN_AOV_TRANSPORT; ++a)
         for (size_t i = 0; i < (size_t)64 * sheen_aov_info[a].n_channels; ++i) assert_true(film->aov[a][i] == 0.0f);
     sheen_film_destroy(&film);
     kit_free(&kit);

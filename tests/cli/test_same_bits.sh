@@ -5,7 +5,7 @@
 # The radiance integrator needs glossy surfaces to have something to cache.
 for integrator in irradiance path radiance; do
     [ $integrator = radiance ] && SCENE="$(dirname "$SCENE")/glossy-box.xml"
-    SAME=("${SMALL[@]}" --size 32x24 --bounces 3 --integrator "$integrator" --spp 2 --aov "depth,indirect,coverage" --quiet)
+    SAME=("${SMALL[@]}" --size 32x24 --bounces 3 --integrator "$integrator" --spp 2 --aov "depth,indirect,records,coverage,transport" --quiet)
     for threads in 1 2 7; do
         expect 0 render "$SCENE" -o "$integrator-$threads.exr" -o "$integrator-$threads.png" "${SAME[@]}" \
             --threads $threads --stats stats.json
