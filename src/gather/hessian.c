@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// One edge between two triangles of the virtual mesh. The point is at the origin with normal z, w0 and w1 are the
-// directions of the edge's ends, q0 and q1 one over their distances, P the angle between them. Where the edge is seen
-// at angle t from w0 its direction and one over its distance are the same mixture of those at the ends,
+// One edge between two triangles of the virtual mesh. The point is at the origin, w0 and w1 are the directions of the
+// edge's ends, q0 and q1 one over their distances, P the angle between them, f the weight of a direction: z . w for
+// irradiance. As the point moves by s, the edge moves by q (s . n) radians out of the triangle to its left, where
+// n = w0 x w1 / sin(P), and what that triangle sends grows by the integral of this times f over the edge's angle. The
+// ends of the edge stay where they are, so that another derivative needs no more than those of f and q. With <> the
+// mean over the angle and F = P / sin(P):
 //
-//     w = A w0 + B w1,  q = A q0 + B q1,  A = sin(P - t) / sin(P),  B = sin(t) / sin(P),
+//     grad = (w0 x w1) F <f q>        Hess = sym (w0 x w1) (4 F <f q^2 w> - F <g q^2>)'
 //
-// and all line integrals of the published formulas become integrals over the angle. With <> the mean over it, and
-// F = P / sin(P):
+// times the radiance to the left less that to the right, where sym A = (A + A') / 2 and g is the gradient of
+// |v| f(v / |v|), which is z for irradiance and drops out. (The edges' terms differ from those of
+// schwarzhaupt2012-hessian by what cancels around a triangle.) Where the edge is seen at angle t from w0, its direction
+// and one over its distance are the same mixture of those at the ends, and so is z . w:
 //
-//     m    = z x (q0 w1 - q1 w0)          g = F <w q>
-//     k    = z . (w0 x w1)                T = F <w w' q^2>,  trace F <q^2>
-//     grad = (F m + 2 k g) / 2            Hess = m g' + g m' + k (4 T - F <q^2> Id)
+//     w = A w0 + B w1,  q = A q0 + B q1,  A = sin(P - t) / sin(P),  B = sin(t) / sin(P).
 //
-// times the radiance to the left less that to the right. Nothing here divides by the length of the edge or the area
-// seen: short edges, edges that point at the observer and ends at infinity (q = 0) need no care. Source:
-// schwarzhaupt2012-hessian, whose forms divide by |r0 x r1|^2 |e|^2.
+// Nothing here divides by the length of the edge or the area seen, as |r0 x r1|^2 |e|^2 of the published forms: short
+// edges, edges that point at the observer and ends at infinity (q = 0) need no care.
 //
 // The means are F <A^2>, F <AB>, F <A^4>, F <A^3 B>, F <A^2 B^2>. Since |w| = 1, A^2 + B^2 + 2 A B cos(P) = 1, so that
 // two of them give the others. They are derivatives of F with respect to x = 1 - cos(P): F <AB> = F' / 2 and
@@ -24,10 +26,21 @@
 #include <float.h>
 #include <stddef.h>
 
-/** A vertex of the mesh: direction and one over the distance, 0 for the sky. */
+/** What a gather knows. */
+typedef struct Samples {
+    SheenStrata s;
+    const Vec3 *directions;
+    const Vec3 *weight; // NULL: the cosine's, (0, 0, 1)
+    const Rgb *L;
+    const float *distance;
+} Samples;
+
+/** A vertex of the mesh. */
 typedef struct Vertex {
-    double x, y, z, q;
-    double L; // luminance
+    double x, y, z;   // direction
+    double q;         // one over the distance, 0 for the sky
+    double f, gx, gy; // weight, and that part of g which is in the plane
+    double L;         // luminance
 } Vertex;
 
 typedef struct EdgeSum {
@@ -35,9 +48,9 @@ typedef struct EdgeSum {
     double xx, xy, yy; // Hessian
 } EdgeSum;
 
-/** F and F <.> of products of A and B. */
+/** F <.> of products of A and B. */
 typedef struct EdgeMeans {
-    double one, aa, ab, aaaa, aaab, aabb;
+    double aa, ab, aaaa, aaab, aabb;
 } EdgeMeans;
 
 // Within this the series below are exact to 1e-7: angles to 29 degrees.
@@ -52,8 +65,8 @@ static EdgeMeans edge_means(double x)
     for (int n = 7; n >= 1; --n) f1 = f1 * x + n * a[n];
     for (int n = 7; n >= 2; --n) f2 = f2 * x + n * (n - 1) * a[n];
     double c = 1.0 - x;
-    EdgeMeans m = {.one = f, .ab = 0.5 * f1, .aabb = 0.125 * f2};
-    m.aa = 0.5 * m.one - c * m.ab;
+    EdgeMeans m = {.ab = 0.5 * f1, .aabb = 0.125 * f2};
+    m.aa = 0.5 * f - c * m.ab;
     m.aaab = 0.5 * m.ab - c * m.aabb;
     m.aaaa = m.aa - m.aabb - 2.0 * c * m.aaab;
     return m;
@@ -62,23 +75,21 @@ static EdgeMeans edge_means(double x)
 static void add_short_edge(const Vertex *v0, const Vertex *v1, double x, double dL, EdgeSum *sum)
 {
     EdgeMeans e = edge_means(x);
-    double q0 = v0->q, q1 = v1->q, q00 = q0 * q0, q01 = q0 * q1, q11 = q1 * q1;
-    double k = v0->x * v1->y - v0->y * v1->x;
-    double mx = q1 * v0->y - q0 * v1->y, my = q0 * v1->x - q1 * v0->x;
-    double g0 = e.aa * q0 + e.ab * q1, g1 = e.ab * q0 + e.aa * q1;
-    double gx = g0 * v0->x + g1 * v1->x, gy = g0 * v0->y + g1 * v1->y;
-    double qq = e.aa * (q00 + q11) + 2.0 * e.ab * q01;
-    double t00 = e.aaaa * q00 + 2.0 * e.aaab * q01 + e.aabb * q11;
-    double t01 = e.aaab * (q00 + q11) + 2.0 * e.aabb * q01;
-    double t11 = e.aabb * q00 + 2.0 * e.aaab * q01 + e.aaaa * q11;
-    // T = w0 a' + w1 b'
-    double ax = t00 * v0->x + t01 * v1->x, ay = t00 * v0->y + t01 * v1->y;
-    double bx = t01 * v0->x + t11 * v1->x, by = t01 * v0->y + t11 * v1->y;
-    sum->x += dL * (0.5 * e.one * mx + k * gx);
-    sum->y += dL * (0.5 * e.one * my + k * gy);
-    sum->xx += dL * (2.0 * mx * gx + k * (4.0 * (v0->x * ax + v1->x * bx) - qq));
-    sum->xy += dL * (mx * gy + my * gx + k * 4.0 * (v0->x * ay + v1->x * by));
-    sum->yy += dL * (2.0 * my * gy + k * (4.0 * (v0->y * ay + v1->y * by) - qq));
+    double q0 = v0->q, q1 = v1->q, q00 = q0 * q0, q01 = 2.0 * q0 * q1, q11 = q1 * q1;
+    double ax = dL * (v0->y * v1->z - v0->z * v1->y), ay = dL * (v0->z * v1->x - v0->x * v1->z);
+    double fq = e.aa * (v0->f * q0 + v1->f * q1) + e.ab * (v0->f * q1 + v1->f * q0);
+    double qq = e.aa * (q00 + q11) + e.ab * q01;
+    // f q^2 = c0 A^3 + c1 A^2 B + c2 A B^2 + c3 B^3
+    double c0 = v0->f * q00, c1 = v1->f * q00 + v0->f * q01, c2 = v0->f * q11 + v1->f * q01, c3 = v1->f * q11;
+    double b0 = 4.0 * (e.aaaa * c0 + e.aaab * (c1 + c3) + e.aabb * c2);
+    double b1 = 4.0 * (e.aaaa * c3 + e.aaab * (c2 + c0) + e.aabb * c1);
+    double bx = b0 * v0->x + b1 * v1->x - 0.5 * (v0->gx + v1->gx) * qq;
+    double by = b0 * v0->y + b1 * v1->y - 0.5 * (v0->gy + v1->gy) * qq;
+    sum->x += ax * fq;
+    sum->y += ay * fq;
+    sum->xx += ax * bx;
+    sum->xy += 0.5 * (ax * by + ay * bx);
+    sum->yy += ay * by;
 }
 
 // A longer edge is halved, by angle: four times is enough for any whose ends are not opposite.
@@ -89,13 +100,16 @@ static void add_long_edge(const Vertex *v0, const Vertex *v1, double dL, int hal
         add_short_edge(v0, v1, x, dL, sum);
         return;
     }
+    if (halvings == 0) return;
     Vertex middle = {.x = v0->x + v1->x, .y = v0->y + v1->y, .z = v0->z + v1->z};
     double length = sqrt(middle.x * middle.x + middle.y * middle.y + middle.z * middle.z);
-    if (halvings == 0) return;
     middle.x /= length;
     middle.y /= length;
     middle.z /= length;
     middle.q = (v0->q + v1->q) / length;
+    middle.f = (v0->f + v1->f) / length;
+    middle.gx = 0.5 * (v0->gx + v1->gx);
+    middle.gy = 0.5 * (v0->gy + v1->gy);
     add_long_edge(v0, &middle, dL, halvings - 1, sum);
     add_long_edge(&middle, v1, dL, halvings - 1, sum);
 }
@@ -131,42 +145,52 @@ typedef struct Meridian {
     Vertex v[SHEEN_RINGS_MAX + 2];
 } Meridian;
 
-static Vertex vertex(Vec3 d, Rgb L, float distance)
+static Vec3 weight_at(const Samples *in, size_t i)
 {
-    float luminance = rgb_luminance(L);
+    if (!in->weight) return v3(0.0f, 0.0f, 1.0f);
+    return v3_finite(in->weight[i]) ? in->weight[i] : v3(0.0f, 0.0f, 0.0f);
+}
+
+static Vertex vertex(const Samples *in, size_t i)
+{
+    Vec3 d = in->directions[i], g = weight_at(in, i);
+    float luminance = rgb_luminance(in->L[i]), distance = in->distance[i];
     return (Vertex){.x = (double)d.x,
                     .y = (double)d.y,
                     .z = (double)d.z,
                     .q = distance > 0.0f ? 1.0 / fmax((double)distance, 1e-15) : 0.0,
+                    .f = (double)v3_dot(g, d),
+                    .gx = (double)g.x,
+                    .gy = (double)g.y,
                     .L = isfinite(luminance) ? (double)luminance : 0.0};
 }
 
-static Vertex pole_of(SheenStrata s, const Vec3 directions[], const Rgb L[], const float distance[])
+// The mean of the innermost ring; g is taken for constant within it, so that f at the pole is g . z.
+static Vertex pole_of(const Samples *in)
 {
     Vertex pole = {.z = 1.0};
-    for (unsigned k = 0; k < s.sectors; ++k) {
-        size_t i = (size_t)k * s.rings;
-        Vertex v = vertex(directions[i], L[i], distance[i]);
+    double N = in->s.sectors;
+    for (unsigned k = 0; k < in->s.sectors; ++k) {
+        Vertex v = vertex(in, (size_t)k * in->s.rings);
         pole.q += v.q;
+        pole.f += (double)weight_at(in, (size_t)k * in->s.rings).z;
+        pole.gx += v.gx;
+        pole.gy += v.gy;
         pole.L += v.L;
     }
-    pole.q /= s.sectors; // after the sum: exact where all are alike
-    pole.L /= s.sectors;
-    return pole;
+    // Divided after the sum: exact where all are alike.
+    return (Vertex){.z = 1.0, .q = pole.q / N, .f = pole.f / N, .gx = pole.gx / N, .gy = pole.gy / N, .L = pole.L / N};
 }
 
-static void read_meridian(SheenStrata s, unsigned k, const Vec3 directions[], const Rgb L[], const float distance[],
-                          Meridian *m)
+static void read_meridian(const Samples *in, unsigned k, Meridian *m)
 {
-    size_t first = (size_t)(k % s.sectors) * s.rings;
-    for (unsigned j = 0; j < s.rings; ++j)
-        m->v[j + 1] = vertex(directions[first + j], L[first + j], distance[first + j]);
-    // Let fall onto the plane, walls stay walls.
-    Vertex *last = &m->v[s.rings], *horizon = &m->v[s.rings + 1];
-    double sine = sqrt(last->x * last->x + last->y * last->y);
-    *horizon = *last;
-    if (!(sine > 0.0)) return;
-    *horizon = (Vertex){.x = last->x / sine, .y = last->y / sine, .q = last->q / sine, .L = last->L};
+    unsigned rings = in->s.rings;
+    size_t first = (size_t)(k % in->s.sectors) * rings;
+    for (unsigned j = 0; j < rings; ++j) m->v[j + 1] = vertex(in, first + j);
+    // Let fall onto the plane, walls stay walls. Nothing from there counts: f and g are 0 but for g's z.
+    const Vertex *last = &m->v[rings];
+    double sine = sqrt(last->x * last->x + last->y * last->y), inverse = sine > 0.0 ? 1.0 / sine : 0.0;
+    m->v[rings + 1] = (Vertex){.x = last->x * inverse, .y = last->y * inverse, .q = last->q * inverse, .L = last->L};
 }
 
 /** Radiance of the triangles between two meridians: each quad from j to j + 1 is cut from (j + 1) to (j, next). */
@@ -183,16 +207,15 @@ static void fill_strip(unsigned rings, const Meridian *here, const Meridian *nex
     }
 }
 
-// The edges of one meridian, and those from it to the next.
-// @param below  radiance below the horizon: any, the same for all sectors
+// The edges of one meridian, and those from it to the next. Edges along the horizon do not move with the point.
 static void add_strip(unsigned rings, const Meridian *here, const Meridian *next, const Strip *before,
-                      const Strip *after, double below, EdgeSum *sum)
+                      const Strip *after, EdgeSum *sum)
 {
     const Vertex *a = here->v, *b = next->v;
     for (unsigned j = 0; j <= rings; ++j) {
         add_edge(&a[j], &a[j + 1], after->inner[j], before->outer[j], sum);
         add_edge(&a[j + 1], &b[j], after->inner[j], after->outer[j], sum);
-        add_edge(&a[j + 1], &b[j + 1], after->outer[j], j < rings ? after->inner[j + 1] : below, sum);
+        if (j < rings) add_edge(&a[j + 1], &b[j + 1], after->outer[j], after->inner[j + 1], sum);
     }
 }
 
@@ -201,21 +224,21 @@ static float finite_float(double x)
     return isfinite(x) ? (float)fmax(-(double)FLT_MAX, fmin(x, (double)FLT_MAX)) : 0.0f;
 }
 
-void sheen_estimate_hessian(SheenStrata s, const Vec3 directions[], const Rgb L[], const float distance[],
-                            IrradianceHessian *out, float gradient[2])
+void sheen_estimate_lobe_hessian(SheenStrata s, const Vec3 directions[], const Vec3 weight[], const Rgb L[],
+                                 const float distance[], IrradianceHessian *out, float gradient[2])
 {
+    const Samples in = {s, directions, weight, L, distance};
     Meridian meridians[2], *here = &meridians[0], *next = &meridians[1];
     Strip strips[2], *before = &strips[0], *after = &strips[1];
     EdgeSum sum = {0, 0, 0, 0, 0};
-    here->v[0] = next->v[0] = pole_of(s, directions, L, distance);
-    read_meridian(s, s.sectors - 1, directions, L, distance, next);
-    read_meridian(s, 0, directions, L, distance, here);
+    here->v[0] = next->v[0] = pole_of(&in);
+    read_meridian(&in, s.sectors - 1, next);
+    read_meridian(&in, 0, here);
     fill_strip(s.rings, next, here, before);
-    double below = before->outer[s.rings];
     for (unsigned k = 0; k < s.sectors; ++k) {
-        read_meridian(s, k + 1, directions, L, distance, next);
+        read_meridian(&in, k + 1, next);
         fill_strip(s.rings, here, next, after);
-        add_strip(s.rings, here, next, before, after, below, &sum);
+        add_strip(s.rings, here, next, before, after, &sum);
         Meridian *m = here;
         here = next;
         next = m;
@@ -227,6 +250,12 @@ void sheen_estimate_hessian(SheenStrata s, const Vec3 directions[], const Rgb L[
     if (!gradient) return;
     gradient[0] = finite_float(sum.x);
     gradient[1] = finite_float(sum.y);
+}
+
+void sheen_estimate_hessian(SheenStrata s, const Vec3 directions[], const Rgb L[], const float distance[],
+                            IrradianceHessian *out, float gradient[2])
+{
+    sheen_estimate_lobe_hessian(s, directions, NULL, L, distance, out, gradient);
 }
 
 HessianEllipse sheen_hessian_ellipse(const IrradianceHessian *h, float E, float error)
