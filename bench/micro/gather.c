@@ -237,7 +237,7 @@ static void whole_gather(Bench *b, size_t i, double t[N_SECTIONS])
     double t1 = processor_seconds();
     direct(b);
     double t2 = processor_seconds();
-    sheen_estimate_irradiance(h->strata, h->directions, h->L, h->distance, &e);
+    sheen_estimate_irradiance(h->strata, h->L, h->distance, &e);
     double t3 = processor_seconds();
     t[TRACE] += t1 - t0;
     t[DIRECT] += t2 - t1;
@@ -250,7 +250,7 @@ static void trace_parts(Bench *b, size_t i, double t[N_SECTIONS])
 {
     Hemisphere *h = &b->h;
     double t0 = processor_seconds();
-    sheen_hemisphere_directions(key_of(i), h);
+    sheen_strata_directions(h->strata, key_of(i), h->directions);
     double t1 = processor_seconds();
     t[DIRECTIONS] += t1 - t0;
     bare_gather(b, i); // the hits

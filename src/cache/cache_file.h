@@ -11,7 +11,7 @@
 #include <stddef.h>
 
 /** Version of the layout; a file of another is refused. */
-enum { SHEEN_CACHE_FILE_VERSION = 1 };
+enum { SHEEN_CACHE_FILE_VERSION = 2 };
 
 /** What a file is made from; all is borrowed. */
 typedef struct SheenCacheContents {
@@ -37,7 +37,7 @@ typedef struct SheenCachePart {
     float cos_min;          // of that store
     unsigned order;         // of radiance, 1..SHEEN_ORDER_MAX; 0 of irradiance
     uint32_t n;             // records
-    size_t light_floats;    // of one record: 21 as in IrradianceLight; 3 parts of [order * order] Rgb
+    size_t light_floats;    // of one record: 27 as in IrradianceLight; 3 parts of [order * order] Rgb
     Record *records;        // [n]
     float *light;           // [n][light_floats]
 } SheenCachePart;

@@ -10,6 +10,8 @@ typedef struct IrradianceLight {
     Rgb E;               // irradiance, W/m^2
     Vec3 translation[3]; // gradient of E for a shift of p, per channel, W/m^3; in the plane of n
     Vec3 rotation[3];    // gradient of E for a rotation n x n', per channel
+    Rgb behind;          // for normals bent away from n: see sheen_irradiance_interpolate_bent
+    Vec3 lean;           // its change with the way in which they are bent, relative; in the plane of n
 } IrradianceLight;
 
 /**
@@ -33,6 +35,18 @@ static inline Rgb irradiance_predict(const Record *record, const IrradianceLight
  */
 Rgb sheen_irradiance_interpolate(const SheenRecordStore *store, const IrradianceLight light[], const Contributors *c,
                                  Vec3 p, Vec3 n);
+
+/**
+ * The same where a map bends the normal to m, but the surface still hides what is below n. Records lie on the surface
+ * as it is without the map and are read at m: with t the direction in the plane of n in which m is bent by theta, each
+ * one's prediction becomes
+ *   E cos(theta) + (n x m) . rotation + (1 - cos(theta)) behind (1 + lean . t).
+ * The first two terms are the integral of L m . wi above n, without approximation. That counts light from between the
+ * planes of m and n negatively; the last term takes it out again, see gather/estimate.h.
+ * @param bent  m, unit
+ */
+Rgb sheen_irradiance_interpolate_bent(const SheenRecordStore *store, const IrradianceLight light[],
+                                      const Contributors *c, Vec3 p, Vec3 n, Vec3 bent);
 
 /** Records with their light. */
 typedef struct SheenIrradianceCache {

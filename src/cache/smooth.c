@@ -99,11 +99,14 @@ static void smooth_irradiance(void *user, size_t item, unsigned worker)
             sum.translation[i] = v3_mad(sum.translation[i], from.weight[k], light->translation[i]);
             sum.rotation[i] = v3_mad(sum.rotation[i], from.weight[k], light->rotation[i]);
         }
+        sum.behind = rgb_mad(sum.behind, from.weight[k], light->behind);
+        sum.lean = v3_mad(sum.lean, from.weight[k], light->lean);
     }
     for (int i = 0; i < 3; ++i) {
         sum.translation[i] = in_plane(sum.translation[i], at->n);
         sum.rotation[i] = in_plane(sum.rotation[i], at->n);
     }
+    sum.lean = in_plane(sum.lean, at->n);
     s->irradiance_out[own] = sum;
 }
 

@@ -3,6 +3,8 @@
 
 #include <stddef.h>
 
+static const double pi = 3.141592653589793;
+
 // Sums are kept in double: a gradient is a difference of many terms of both signs.
 typedef struct RgbSum {
     double r, g, b;
@@ -83,7 +85,6 @@ static void translation_gradient(SheenStrata s, const Rgb L[], const float dista
     WallTable table;
     fill_table(s.rings, &table);
     RgbSum x = {0, 0, 0}, y = {0, 0, 0};
-    const double two_pi = 6.283185307179586;
     Sector sectors[2];
     read_sector(s, s.sectors - 1, L, distance, &sectors[1]);
     for (unsigned k = 0; k < s.sectors; ++k) {
@@ -91,7 +92,7 @@ static void translation_gradient(SheenStrata s, const Rgb L[], const float dista
         read_sector(s, k, L, distance, here);
         RgbSum u = {0, 0, 0}, v = {0, 0, 0};
         add_walls(s, &table, here, before, &u, &v);
-        double middle = two_pi * (k + 0.5) / s.sectors, edge = two_pi * k / s.sectors, width = two_pi / s.sectors;
+        double middle = 2.0 * pi * (k + 0.5) / s.sectors, edge = 2.0 * pi * k / s.sectors, width = 2.0 * pi / s.sectors;
         sum_add(&x, width * cos(middle), sum_rgb(u));
         sum_add(&y, width * sin(middle), sum_rgb(u));
         sum_add(&x, -sin(edge), sum_rgb(v));
@@ -101,23 +102,91 @@ static void translation_gradient(SheenStrata s, const Rgb L[], const float dista
     out[1] = sum_rgb(y);
 }
 
-void sheen_estimate_irradiance(SheenStrata s, const Vec3 directions[], const Rgb L[], const float distance[],
-                               IrradianceEstimate *out)
+/** What a sum over the strata takes of the directions in it: integrals over a ring, and over a sector. Radiance counts
+ *  as even in a stratum, so that grazing rays, of much weight and little chance, bring no noise of their own. */
+typedef struct RingIntegrals {
+    double of[SHEEN_RINGS_MAX];
+} RingIntegrals;
+
+static Vec2 sector_integrals(SheenStrata s, unsigned k) // of cos(phi) and sin(phi)
+{
+    double step = 2.0 * pi / s.sectors, lower = step * k, upper = step * (k + 1);
+    return v2((float)(sin(upper) - sin(lower)), (float)(cos(lower) - cos(upper)));
+}
+
+// Sums of L times a ring's integral and a sector's.
+static void sum_vector(SheenStrata s, const RingIntegrals *rings, const Rgb L[], RgbSum *x, RgbSum *y)
+{
+    for (unsigned k = 0; k < s.sectors; ++k) {
+        RgbSum sector = {0, 0, 0};
+        for (unsigned j = 0; j < s.rings; ++j) sum_add(&sector, rings->of[j], L[k * s.rings + j]);
+        Vec2 w = sector_integrals(s, k);
+        sum_add(x, (double)w.x, sum_rgb(sector));
+        sum_add(y, (double)w.y, sum_rgb(sector));
+    }
+}
+
+// Of what a plane bent by SHEEN_BEND leaves behind, for light from a zenith angle: its Fourier series in the azimuth.
+static void behind_at(double cos_theta, double *mean, double *first)
+{
+    double a = sin((double)SHEEN_BEND) * sqrt(1.0 - cos_theta * cos_theta), b = cos((double)SHEEN_BEND) * cos_theta;
+    *mean = *first = 0.0;
+    if (!(a > b)) return;
+    double psi = acos(b / a), reach = sin(psi); // max(0, a cos(psi) - b) is not zero from -psi to psi
+    *mean = (a * reach - b * psi) / pi;
+    *first = (a * (psi + reach * cos(psi)) - 2.0 * b * reach) / pi;
+}
+
+void sheen_estimate_behind(SheenStrata s, const Rgb L[], BehindEstimate *out)
+{
+    enum { STEPS = 8 };
+    RingIntegrals means = {{0}}, firsts = {{0}};
+    for (unsigned j = 0; j < s.rings; ++j) {
+        double upper = sqrt(1.0 - (double)j / s.rings), lower = sqrt(1.0 - (double)(j + 1) / s.rings);
+        double width = (upper - lower) / STEPS;
+        for (unsigned i = 0; i < STEPS; ++i) {
+            double mean, first;
+            behind_at(lower + (i + 0.5) * width, &mean, &first);
+            means.of[j] += width * mean;
+            firsts.of[j] += width * first;
+        }
+    }
+    RgbSum mean = {0, 0, 0}, x = {0, 0, 0}, y = {0, 0, 0};
+    double scale = 1.0 / (1.0 - cos((double)SHEEN_BEND));
+    for (unsigned i = 0; i < strata_count(s); ++i)
+        sum_add(&mean, scale * 2.0 * pi / s.sectors * means.of[i % s.rings], L[i]);
+    sum_vector(s, &firsts, L, &x, &y);
+    out->mean = sum_rgb(mean);
+    double luminance = (double)rgb_luminance(out->mean);
+    scale = luminance > 0.0 ? -scale / luminance : 0.0; // what is bent away from light has it behind
+    out->lean[0] = (float)(scale * (double)rgb_luminance(sum_rgb(x)));
+    out->lean[1] = (float)(scale * (double)rgb_luminance(sum_rgb(y)));
+}
+
+// grad_r E = integral of L (n x d) with n x d = (-d.y, d.x, 0) in the local frame.
+static void rotation_gradient(SheenStrata s, const Rgb L[], Rgb out[2])
+{
+    RingIntegrals rings; // of sin(theta) over the zenith's share of the solid angle, sin(theta) d theta
+    double before = 0.0;
+    for (unsigned j = 0; j < s.rings; ++j) {
+        double sin2 = (double)(j + 1) / s.rings, sine = sqrt(sin2);
+        double up_to = 0.5 * (asin(fmin(sine, 1.0)) - sine * sqrt(fmax(0.0, 1.0 - sin2)));
+        rings.of[j] = up_to - before;
+        before = up_to;
+    }
+    RgbSum x = {0, 0, 0}, y = {0, 0, 0};
+    sum_vector(s, &rings, L, &x, &y);
+    out[0] = rgb_scale(sum_rgb(y), -1.0f);
+    out[1] = sum_rgb(x);
+}
+
+void sheen_estimate_irradiance(SheenStrata s, const Rgb L[], const float distance[], IrradianceEstimate *out)
 {
     unsigned n = strata_count(s);
-    double per_cell = 3.141592653589793 / n;
-    RgbSum E = {0, 0, 0}, rx = {0, 0, 0}, ry = {0, 0, 0};
-    for (unsigned i = 0; i < n; ++i) {
-        sum_add(&E, per_cell, L[i]);
-        // n x d = (-d.y, d.x, 0) in the local frame, over the density cos(theta) / pi of the samples. A grazing sample
-        // is cut at 0.6 degrees, where one ray would outweigh all others.
-        float inverse = 1.0f / maxf(directions[i].z, 0.01f);
-        sum_add(&rx, -per_cell * (double)(directions[i].y * inverse), L[i]);
-        sum_add(&ry, per_cell * (double)(directions[i].x * inverse), L[i]);
-    }
+    RgbSum E = {0, 0, 0};
+    for (unsigned i = 0; i < n; ++i) sum_add(&E, pi / n, L[i]);
     out->E = sum_rgb(E);
-    out->rotation[0] = sum_rgb(rx);
-    out->rotation[1] = sum_rgb(ry);
+    rotation_gradient(s, L, out->rotation);
     translation_gradient(s, L, distance, out->translation);
     out->R = sheen_harmonic_mean(n, distance);
 }

@@ -168,7 +168,7 @@ static void set_vertex(const GatherVertex *v, bool turned, DeepCell *c)
     c->p = v->point.origin;
     c->n = v->point.n;
     c->ng = v->point.ng;
-    c->weight = v->weight;
+    c->weight = rgb_scale(v->weight, diffuse_point_open(&v->point));
     c->turned = turned;
 }
 
@@ -236,7 +236,7 @@ static SheenStatus queue_uncovered(const SheenDeep *d, uint32_t first, Queue *q)
         for (size_t i = 0; i < strata_count(deep_strata); ++i) {
             const DeepCell *c = &cells[i];
             if (rgb_is_black(c->weight) || c->share[0] > 0.0f) continue;
-            DiffusePoint p = {c->p, c->p, c->ng, c->n, rgb_scale(c->weight, SHEEN_PI)};
+            DiffusePoint p = {c->p, c->p, c->ng, c->n, c->n, rgb_scale(c->weight, SHEEN_PI)};
             if (!queue_push(q, &p)) return SHEEN_ERR_NOMEM;
         }
     }
@@ -324,9 +324,8 @@ static void sweep_task(void *user, size_t item, unsigned worker)
         h->L[i] = cell_radiance(&cells[i], t->k, t->before, item);
         h->distance[i] = cells[i].distance;
     }
-    sheen_hemisphere_directions(point_key(d, (uint32_t)item, 1), h);
     IrradianceEstimate e;
-    sheen_estimate_irradiance(h->strata, h->directions, h->L, h->distance, &e);
+    sheen_estimate_irradiance(h->strata, h->L, h->distance, &e);
     t->now[item] = e.E;
     unsigned level = d->bounces - t->k;
     if (level >= SHEEN_DEEP_LEVELS) return;

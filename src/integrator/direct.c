@@ -37,8 +37,8 @@ static bool sample_light(const SheenWork *work, const DiffusePoint *point, Light
     if (!(probability > 0.0f)) return false;
     LightSample sample;
     if (!sheen_light_sample(work->lights, light, point->p, numbers.place, &sample)) return false;
-    float cos_theta = v3_dot(sample.wi, point->n);
-    if (cos_theta <= 0.0f || v3_dot(sample.wi, point->ng) <= 0.0f) return false;
+    float cos_theta = v3_dot(sample.wi, point->bent);
+    if (cos_theta <= 0.0f || v3_dot(sample.wi, point->n) <= 0.0f || v3_dot(sample.wi, point->ng) <= 0.0f) return false;
     *E = rgb_scale(sample.radiance, cos_theta / probability);
     *shadow = sample.infinite ? (Ray){point->origin, INFINITY, sample.wi}
                               : (Ray){point->origin, 1.0f, v3_sub(sample.target, point->origin)};

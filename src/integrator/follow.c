@@ -6,8 +6,16 @@
 bool sheen_set_point(const SurfacePoint *s, bool front, Rgb reflectance, DiffusePoint *out)
 {
     Vec3 ng = front ? s->ng : v3_neg(s->ng), n = front ? s->ns : v3_neg(s->ns);
-    *out = (DiffusePoint){s->p, sheen_surface_leave(s, ng), ng, n, reflectance};
+    *out = (DiffusePoint){s->p, sheen_surface_leave(s, ng), ng, n, n, reflectance};
     return !rgb_is_black(reflectance);
+}
+
+void sheen_bend_point(const Bsdf *bsdf, const Frame *frame, Vec3 wo_l, DiffusePoint *point)
+{
+    Vec3 n_l;
+    if (!sheen_bsdf_is_mapped(bsdf)) return;
+    sheen_bsdf_diffuse(bsdf, wo_l, &n_l);
+    point->bent = frame_to_world(frame, n_l);
 }
 
 bool sheen_lambertian_point(const SheenScene *scene, const SheenMaterial *material, const SurfacePoint *s, Vec3 wo,
@@ -47,7 +55,8 @@ SheenStep sheen_step(const SurfacePoint *s, const Bsdf *bsdf, Vec3 wo, SheenSamp
     BsdfSample sample;
     float lobe = sampler_1d(sampler);
     Vec2 u = sheen_bsdf_is_delta(bsdf) ? v2(0.5f, 0.5f) : sampler_2d(sampler);
-    if (!sheen_bsdf_sample(bsdf, sheen_seen_from(s, &frame, wo), lobe, u, &sample)) return SHEEN_STEP_ENDS;
+    Vec3 wo_l = sheen_seen_from(s, &frame, wo);
+    if (!sheen_bsdf_sample(bsdf, wo_l, lobe, u, &sample)) return SHEEN_STEP_ENDS;
     if (!rgb_finite(sample.weight) || rgb_is_black(sample.weight)) return SHEEN_STEP_ENDS;
     if (sample.passage) {
         *throughput = rgb_mul(*throughput, sample.weight);
@@ -61,7 +70,12 @@ SheenStep sheen_step(const SurfacePoint *s, const Bsdf *bsdf, Vec3 wo, SheenSamp
         bool turns = sample.roughness < 1.0f;
         if ((turns && through) || !sheen_set_point(s, front, sample.weight, point)) return SHEEN_STEP_ENDS;
         *next = sheen_surface_ray(s, wi);
-        return turns ? SHEEN_STEP_TURNS : SHEEN_STEP_SCATTERS;
+        if (turns) return SHEEN_STEP_TURNS;
+        if (!sample.transmit) sheen_bend_point(bsdf, &frame, wo_l, point);
+        // Of a mapped surface some directions were absorbed above, those below its plane. What asks for its light
+        // knows.
+        point->reflectance = rgb_scale(point->reflectance, 1.0f / diffuse_point_open(point));
+        return SHEEN_STEP_SCATTERS;
     }
     if (through) return SHEEN_STEP_ENDS;
     *throughput = rgb_mul(*throughput, sample.weight);

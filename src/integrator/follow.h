@@ -14,12 +14,22 @@ enum { SHEEN_SPECULAR_MAX = 32 };
 typedef struct DiffusePoint {
     Vec3 p;
     Vec3 origin;     // p off the surface, on the seen side: where rays leave
-    Vec3 ng, n;      // unit geometric and shading normals of the seen side
+    Vec3 ng, n;      // unit geometric and shading normals of the seen side: where its records lie
+    Vec3 bent;       // unit normal about which it scatters: n, unless a bump or normal map bends it
     Rgb reflectance; // albedo
 } DiffusePoint;
 
-/** Makes the point on the front or the back of a surface. @return false when it is black */
+/** The share of light that is alike from everywhere above n which a surface about `bent` receives. */
+static inline float diffuse_point_open(const DiffusePoint *point)
+{
+    return 0.5f + 0.5f * v3_dot(point->n, point->bent);
+}
+
+/** Makes the point on the front or the back of a surface without a map. @return false when it is black */
 bool sheen_set_point(const SurfacePoint *s, bool front, Rgb reflectance, DiffusePoint *out);
+
+/** Bends the point as the maps of its diffuse lobes do. @param frame  about the shading normal; @param wo_l  in it */
+void sheen_bend_point(const Bsdf *bsdf, const Frame *frame, Vec3 wo_l, DiffusePoint *point);
 
 /** @return the material of a surface that is Lambertian and nothing else, which needs no BSDF; NULL for others. */
 static inline const SheenMaterial *sheen_lambertian(const SheenScene *scene, const SurfacePoint *s)

@@ -23,7 +23,7 @@ static void add_deep_light(const SheenDeep *deep, Hemisphere *h)
             queries[i] = sheen_deep_ask(deep, v[i].point.p, v[i].point.n, v[i].distance, (int)v[i].bounces - 1,
                                         hash_combine(h->key, v[i].ray));
         for (size_t i = 0; i < n; ++i) {
-            Rgb E = sheen_deep_answer(deep, &queries[i]);
+            Rgb E = rgb_scale(sheen_deep_answer(deep, &queries[i]), diffuse_point_open(&v[i].point));
             h->L[v[i].cell] = rgb_add(h->L[v[i].cell], rgb_mul(v[i].weight, E));
         }
     }

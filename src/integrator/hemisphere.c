@@ -133,11 +133,6 @@ static void receive(const SheenWork *work, const Followed *f, Rgb weight, uint32
         (GatherVertex){f->point, reflected, cell, ray, f->distance, bounces, lit, turns, f->onward};
 }
 
-void sheen_hemisphere_directions(uint32_t key, Hemisphere *h)
-{
-    sheen_strata_directions(h->strata, hash_combine(key, KEY_STRATA), h->directions);
-}
-
 // Point e of a Kronecker sequence of its own for each key. Source: roberts2018-quasirandom.
 static Vec2 kronecker(uint32_t key, uint32_t e)
 {
@@ -193,7 +188,7 @@ void sheen_hemisphere_trace(const SheenWork *work, const DiffusePoint *point, un
                             SheenStats *stats)
 {
     h->n_vertices = 0;
-    sheen_hemisphere_directions(h->key, h);
+    sheen_strata_directions(h->strata, hash_combine(h->key, KEY_STRATA), h->directions);
     uint32_t specular_key = hash_combine(h->key, KEY_SPECULAR);
     for (uint32_t i = 0; i < h->cells; ++i) h->rays[i] = leave(point, frame_to_world(&h->frame, h->directions[i]));
     sheen_accel_intersect_many(work->accel, SHEEN_COHERENT, h->cells, h->rays, h->hits);
@@ -283,11 +278,11 @@ size_t sheen_hemisphere_refine(const SheenWork *work, const DiffusePoint *point,
 static float onward(const Hemisphere *h, const GatherVertex *v, uint32_t key, Vec3 *d)
 {
     SheenSampler sampler = sampler_make(key, v->ray);
-    Frame frame = frame_from_normal(v->point.n);
+    Frame frame = frame_from_normal(v->point.bent);
     float choice = sampler_1d(&sampler);
     float weight = sheen_guide_direction(&h->guide, v->point.p, &frame, choice, sampler_2d(&sampler), d);
     *d = frame_to_world(&frame, *d);
-    return weight;
+    return v3_dot(*d, v->point.n) > 0.0f ? weight : 0.0f;
 }
 
 size_t sheen_hemisphere_extend(const SheenWork *work, float near, Hemisphere *h, SheenStats *stats)

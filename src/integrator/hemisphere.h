@@ -70,9 +70,6 @@ typedef struct Hemisphere {
 bool sheen_hemisphere_reserve(Hemisphere *h, SheenStrata strata);
 void sheen_hemisphere_free(Hemisphere *h);
 
-/** Fills h->directions: the jittered strata of a gather, a function of its key alone. */
-void sheen_hemisphere_directions(uint32_t key, Hemisphere *h);
-
 /** Begins a gather at a point: its frame and its key. It has no hot spots until sheen_guide_choose gives it some, and
  *  takes glossy surfaces for Lambertian unless h->glossy is set. */
 void sheen_hemisphere_begin(const DiffusePoint *point, uint32_t key, Hemisphere *h);

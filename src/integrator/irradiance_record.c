@@ -39,14 +39,19 @@ static void make(const void *maker, const ShadingPoint *p, uint32_t key, unsigne
     const SheenOptions *o = &m->gatherer.work->options;
     IrradianceLight *light = out;
     float R_min = record_least_radius(o, p->footprint);
-    const Hemisphere *h = sheen_gather_light(&m->gatherer, &p->point, R_min, key, worker, stats);
+    DiffusePoint at = p->point;
+    at.bent = at.n; // whatever a map makes of the surface there
+    const Hemisphere *h = sheen_gather_light(&m->gatherer, &at, R_min, key, worker, stats);
     IrradianceEstimate e;
-    sheen_estimate_irradiance(h->strata, h->directions, h->L, h->distance, &e);
+    sheen_estimate_irradiance(h->strata, h->L, h->distance, &e);
     *record = (Record){.p = p->point.p, .n = p->point.n, .error = h->error};
     float R = o->gradient_clamping ? estimate_gradient_radius(&e) : e.R;
     record_set_radius(o, p->footprint, R, record);
     estimate_enlarge(R, record->R_min, &e);
-    *light = (IrradianceLight){.E = e.E};
+    BehindEstimate behind;
+    sheen_estimate_behind(h->strata, h->L, &behind);
+    *light = (IrradianceLight){.E = e.E, .behind = behind.mean};
+    light->lean = frame_to_world(&h->frame, v3(behind.lean[0], behind.lean[1], 0.0f));
     if (o->gradients == SHEEN_GRADIENT_NONE) return;
     estimate_world_gradient(&h->frame, e.translation, light->translation);
     estimate_world_gradient(&h->frame, e.rotation, light->rotation);

@@ -155,7 +155,7 @@ static bool indirect_diffuse(const SheenWork *work, const SheenIrradianceCache *
     if (!cache) return false;
     sheen_store_find_near(cache->store, p->point.p, p->point.n, record_most_enlarged(&work->options, p->footprint), &c);
     if (c.n == 0) return false;
-    Rgb E = sheen_irradiance_interpolate(cache->store, cache->light, &c, p->point.p, p->point.n);
+    Rgb E = sheen_irradiance_interpolate_bent(cache->store, cache->light, &c, p->point.p, p->point.n, p->point.bent);
     add_reflected(p, E, SHEEN_AOV_INDIRECT, picture, stats);
     add_cache_layers(cache->store, p, &c, &irradiance_look, picture);
     return true;

@@ -251,6 +251,7 @@ static bool see(const SheenWork *work, const EyeRay *r, SeenSurface *s, int list
     if (!(classes & SHEEN_BSDF_DIFFUSE)) return true;
     Rgb diffuse = sheen_bsdf_diffuse(&s->bsdf, s->wo_l, NULL);
     if (!sheen_set_point(&s->s, s->wo_l.z > 0.0f, diffuse, &point)) return true;
+    sheen_bend_point(&s->bsdf, &s->frame, s->wo_l, &point);
     return add_point(r, &point, true, v);
 }
 

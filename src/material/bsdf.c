@@ -315,13 +315,21 @@ Rgb sheen_bsdf_diffuse(const Bsdf *bsdf, Vec3 wo_l, Vec3 *n_l)
     for (uint32_t i = 0; i < bsdf->n_lobes; ++i) {
         const BsdfLobe *lobe = &bsdf->lobes[i];
         if (lobe->ops->class != SHEEN_BSDF_DIFFUSE) continue;
-        Rgb albedo = albedo_of(bsdf, lobe, wo_l);
+        BsdfWay way;
+        if (!sheen_bsdf_way(bsdf, lobe, wo_l, &way)) continue;
+        Rgb albedo = rgb_scale(albedo_of(bsdf, lobe, wo_l), sheen_bsdf_way_terminator(&way));
         sum = rgb_add(sum, albedo);
         if (n_l && rgb_max(albedo) > heaviest) {
-            BsdfWay way;
             heaviest = rgb_max(albedo);
-            if (sheen_bsdf_way(bsdf, lobe, wo_l, &way)) *n_l = sheen_bsdf_way_normal(&way);
+            *n_l = sheen_bsdf_way_normal(&way);
         }
     }
     return at_most_one(sum);
+}
+
+bool sheen_bsdf_is_mapped(const Bsdf *bsdf)
+{
+    for (uint32_t i = 0; i < bsdf->n_wraps; ++i)
+        if (bsdf->wraps[i].kind == SHEEN_WRAP_FRAME && bsdf->wraps[i].material) return true;
+    return false;
 }

@@ -140,12 +140,15 @@ Rgb sheen_bsdf_albedo(const Bsdf *bsdf, Vec3 wo_l);
 /**
  * The diffuse lobes as one Lambertian surface: their radiance toward wo is the result times irradiance / pi. Exact for
  * Lambert's lobe. The base of a plastic and the diffuse lobe of `principled` depend on wi as well: the result is their
- * directional albedo for wo, exact under light that is alike from everywhere.
+ * directional albedo for wo, exact under light that is alike from everywhere; so is the fading of light along a map.
  * @param n_l  gets the unit normal about which the irradiance is meant, on the side of wo: z or -z unless a map
  * perturbs it (that of the heaviest diffuse lobe); NULL when not wanted
  * @return zero where there is no diffuse lobe, or wo is behind it
  */
 Rgb sheen_bsdf_diffuse(const Bsdf *bsdf, Vec3 wo_l, Vec3 *n_l);
+
+/** @return true when a bump or normal map stands between the surface and a lobe. */
+bool sheen_bsdf_is_mapped(const Bsdf *bsdf);
 
 /**
  * @return false when nothing of a material, anywhere, is a mirror, glass, or metal, rough or not: what shows lamps that

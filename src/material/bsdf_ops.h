@@ -126,6 +126,9 @@ bool sheen_bsdf_way_in(const BsdfWay *way, Vec3 *wi, Rgb *factor, float *density
 /** Takes a sample of the lobe to the surface: direction, weight and density. @return false when it does not get out */
 bool sheen_bsdf_way_out(const BsdfWay *way, BsdfSample *sample);
 
+/** @return what the fading of light along mapped surfaces leaves of light that is alike from everywhere. */
+float sheen_bsdf_way_terminator(const BsdfWay *way);
+
 /** @return the lobe's z axis as it is at the surface. */
 Vec3 sheen_bsdf_way_normal(const BsdfWay *way);
 

@@ -43,12 +43,23 @@ static float tan2(Vec3 w)
     return (w.x * w.x + w.y * w.y) / (w.z * w.z);
 }
 
+// The squared roughness that reaches a mapped normal.
+static float terminator_alpha2(const BsdfWrap *wrap)
+{
+    return minf(0.125f * tan2(wrap->frame.n), 1.0f);
+}
+
+static bool fades_out(const BsdfWrap *wrap)
+{
+    return wrap->kind == SHEEN_WRAP_FRAME && wrap->material && wrap->material->shadow_normals;
+}
+
 // Between the terminator of the mapped normal and that of the surface, light would end abruptly: it is shadowed as by
 // microfacets of a roughness that reaches the mapped normal. Source: conty2019-terminator
 static float terminator(const BsdfWrap *wrap, Vec3 wi)
 {
-    if (wrap->kind != SHEEN_WRAP_FRAME || !wrap->material || !wrap->material->shadow_normals) return 1.0f;
-    float alpha2 = minf(0.125f * tan2(wrap->frame.n), 1.0f), f = 2.0f / (1.0f + sqrtf(1.0f + alpha2 * tan2(wi)));
+    if (!fades_out(wrap)) return 1.0f;
+    float f = 2.0f / (1.0f + sqrtf(1.0f + terminator_alpha2(wrap) * tan2(wi)));
     return f > 0.0f ? f : 0.0f;
 }
 
@@ -142,6 +153,15 @@ bool sheen_bsdf_way_out(const BsdfWay *way, BsdfSample *sample)
     if (way->n > 0) sample->weight = rgb_mul(sample->weight, factor);
     if (!sample->delta) sample->pdf *= density;
     return true;
+}
+
+// Fitted to a quadrature over the hemisphere: good to 0.003 for normals bent by up to 0.8 rad, to 0.04 up to 1.2.
+float sheen_bsdf_way_terminator(const BsdfWay *way)
+{
+    float f = 1.0f;
+    for (int i = 0; i < way->n; ++i)
+        if (fades_out(way->wraps[i])) f /= 1.0f + 0.74f * powf(terminator_alpha2(way->wraps[i]), 0.775f);
+    return f;
 }
 
 Vec3 sheen_bsdf_way_normal(const BsdfWay *way)

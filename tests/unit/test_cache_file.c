@@ -226,13 +226,13 @@ static void test_layout(void **state)
     KitBytes b = kit_encode(&made.contents);
     static const uint8_t head[] = {
         0x89, 'S',  'H',  'C',  '\r', '\n', 0x1a, '\n',                                    // what it is
-        1,    0,    0,    0,    2,    0,    0,    0,                                       // version, parts
+        2,    0,    0,    0,    2,    0,    0,    0,                                       // version, parts
         0,    0,    0,    0,    0,    0,    0,    0,                                       // bytes, set below
         0xef, 0xcd, 0xab, 0x89, 0x67, 0x45, 0x23, 0x01,                                    // scene
         7,    0,    0,    0,    0,    0,    0,    0,    '{', '"', 'a', '"', ':', '1', '}', // description
         0,    0,    0,    0,    0,    0,    0,    0,    1,   0,   0,   0, // irradiance, no order, clamped
         0x9a, 0x99, 0x19, 0x3e, 0,    0,    0x80, 0xbf, 1,   0,   0,   0, // 0.15, -1, one record
-        21,   0,    0,    0,                                              // of so many floats of light
+        27,   0,    0,    0,                                              // of so many floats of light
     };
     uint8_t want[sizeof head];
     memcpy(want, head, sizeof head);
