@@ -41,7 +41,7 @@ static float estimate(SheenStrata s, bool hessian, const Gather *g)
         return h.xx + h.xy + h.yy;
     }
     IrradianceEstimate e;
-    sheen_estimate_irradiance(s, g->directions, g->L, g->distance, &e);
+    sheen_estimate_irradiance(s, g->L, g->distance, &e);
     return e.E.g + e.translation[0].g + e.rotation[1].g + e.R;
 }
 
