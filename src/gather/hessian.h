@@ -55,7 +55,7 @@ void sheen_estimate_hessian(SheenStrata s, const Vec3 directions[], const Rgb L[
  *     box without occlusion                  0.02    0.006   0.001
  *     flat bright screen on black            0.13    0.06    0.02
  *     dark ball before a ceiling             0.14    0.10    0.16
- *     bright ball on black                   0.11    0.19    0.23
+ *     bright ball on black                   0.12    0.19    0.23
  */
 void sheen_estimate_lobe_hessian(SheenStrata s, const Vec3 directions[], const Vec3 weight[], const Rgb L[],
                                  const float distance[], IrradianceHessian *out, float gradient[2]);
