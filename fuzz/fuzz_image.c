@@ -23,5 +23,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (errors != (status ? 1 : 0)) abort();
     if ((image.pixels == NULL) != (status != SHEEN_OK)) abort();
     sheen_image_free(&image);
+    SheenImageLayers layers;
+    errors = 0;
+    status = sheen_image_decode_layers(data, size, "fuzz", &log, &layers);
+    if (errors != (status ? 1 : 0) || (status && layers.n > 0)) abort();
+    sheen_image_layers_free(&layers);
     return 0;
 }

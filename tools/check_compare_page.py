@@ -3,10 +3,10 @@
 
 Renders three small pictures, compares them, and checks at 1280 x 900 with a mouse and a keyboard, and at 390 x 844 with
 a finger: nothing fails in the script; the canvases hold the pictures; slider, exposure, error map and the choice of the
-image and, of folders, of the picture do what they say; nothing is wider than the window; a finger can still scroll the
-page.
+image, of its layer and, of folders, of the picture do what they say; nothing is wider than the window; a finger can
+still scroll the page.
 
-Usage: tools/check_compare_page.py [--sheen PROGRAM] [--keep FOLDER]      about 20 seconds
+Usage: tools/check_compare_page.py [--sheen PROGRAM] [--keep FOLDER]      about 30 seconds
 Needs Chromium (`chromium`, or the program named by CHROMIUM) and nothing beyond Python's library: it talks to the
 browser through a pair of pipes. Prints "skipped" and exits with 77 where there is no Chromium, else with 0 or 1.
 """
@@ -156,6 +156,8 @@ def check_page(b):
     check("the script has no errors", not b.complaints(), b.complaints())
     check("the viewer is there", b.value("!$('viewer').hidden"))
     check("there is no choice of one picture", b.value("$('several').offsetHeight") == 0)
+    check("there is no choice of one layer", b.value("$('reference-layers').offsetHeight + $('image-layers').offsetHeight"
+                                                     " + $('legends').offsetHeight") == 0)
     # A Radiance file keeps 8 bits of the largest channel, which is up to some steps in a darker one, .1 in the mean.
     for canvas, role in (("over", "reference"), ("under", "image")):
         off = b.value(f"{DIFFERENCE}('{canvas}', '{role}')")
@@ -217,6 +219,62 @@ def check_choice(b):
     check_width(b)
 
 
+# The colour of a pixel in the middle of a canvas' row, 0 on top to 1.
+PIXEL = """((canvas, row) => { const c = $(canvas);
+  return [...c.getContext('2d').getImageData(c.width >> 1, row * (c.height - 1), 1, 1).data].slice(0, 3).join(); })"""
+LAYERS = ("colour,accuracy (V),depth (Z),normal.X,normal.Y,normal.Z,transport (RGB)", "colour,depth (Z)")
+
+
+def check_layers(b):
+    """The page of a reference with depth and an image with more, and one without layers."""
+    check("the script has no errors", not b.complaints(), b.complaints())
+    for role, expected in zip(("image", "reference"), LAYERS):
+        seen = b.value(f"[...$('{role}-layer').options].map(o => o.text).join()")
+        check(f"layers of the {role} are there to choose from", seen == expected, seen)
+    color = b.value(f"{PIXEL}('under', 0.5)")
+    b.value("$('image-layer').focus()")
+    b.key(*DOWN)
+    check("a key shows the accuracy", b.value("$('image-legend').innerText.replace(/\\s+/g, ' ')")
+          == "image: accuracy (V) 0 0.25 a of the records, smaller is finer", b.value("$('image-legend').innerText"))
+    check("one value everywhere is the scale's upper end", b.value(f"{PIXEL}('under', 0.5)") == "252,253,191",
+          b.value(f"{PIXEL}('under', 0.5)"))
+    check("the reference keeps its colour", b.value("$('reference-layer').value === '' && $('reference-legend').hidden"))
+    check("its exposure can be set", b.value("$('brightness').offsetHeight") > 0)
+    b.key(*DOWN)
+    texts = b.value("[...$('legends').children].map(e => e.innerText.replace(/\\s+/g, ' ').replace(/^\\w+: /, ''))")
+    check("the reference follows to the depth, on the same scale",
+          b.value("$('reference-layer').value") == "depth.Z" and len(texts) == 2 and texts[0] == texts[1]
+          and texts[0].startswith("depth (Z) ") and texts[0].endswith(" m distance of the first surface"), texts)
+    check("which spans both", b.value("range('image').join() === range('reference').join()"
+                                      " && range('image').join() !== [chosen('image').dataset.min,"
+                                      " chosen('image').dataset.max].join()"), b.value("roles.map(range).join()"))
+    check("data have no exposure", b.value("$('brightness').offsetHeight") == 0)
+    # What the value of one byte should look like, from the legend's ends and the element's.
+    value = b.value("""(() => { const l = chosen('image'), copy = new OffscreenCanvas(l.naturalWidth, l.naturalHeight)
+      .getContext('2d'); copy.drawImage(l, 0, 0);
+      const q = copy.getImageData(l.naturalWidth >> 1, 0.5 * (l.naturalHeight - 1), 1, 1).data[0];
+      return +l.dataset.min + (q - 1) / 254 * (l.dataset.max - l.dataset.min); })()""")
+    low, high = b.value("range('image')")
+    at = 4 * (value - low) / (high - low)
+    ramp = [(0, 0, 4), (81, 18, 124), (183, 55, 121), (252, 137, 97), (252, 253, 191)]
+    i = min(3, int(at))
+    expected = [p + (at - i) * (q - p) for p, q in zip(ramp[i], ramp[i + 1])]
+    got = [int(x) for x in b.value(f"{PIXEL}('under', 0.5)").split(",")]
+    check("a depth has the colour of its value", max(abs(x - y) for x, y in zip(got, expected)) <= 1, (got, expected))
+    check_width(b)
+    b.value("$('image-layer').value = 'transport'; $('image-layer').dispatchEvent(new Event('input'))")
+    b.value("$('exposure').value = 0; $('exposure').dispatchEvent(new Event('input'))")
+    check("transport is drawn as a colour", b.value(f"{PIXEL}('under', 0.5)") == "0,255,0"
+          and b.value("$('image-legend').innerText").find("green: irradiance records") > 0, b.value(f"{PIXEL}('under', 0.5)"))
+    check("the reference stays where it has no such layer", b.value("$('reference-layer').value") == "depth.Z")
+    b.value("$('which').focus()")
+    b.key(*DOWN)
+    check("an image without layers shows its colour", b.value("$('image-layers').offsetHeight") == 0
+          and b.value("$('image-layer').value") == "" and b.value(f"{PIXEL}('under', 0.5)") == color,
+          (b.value(f"{PIXEL}('under', 0.5)"), color))
+    check("the reference's layer stays", b.value("$('reference-layer').value") == "depth.Z")
+
+
 def check_mouse(b):
     left, top, width, height = b.box("stage")
     for share in (0.25, 0.8):
@@ -251,18 +309,33 @@ def compare(sheen, page, operands):
     return page
 
 
+def render(sheen, scene, path, *words):
+    subprocess.run([sheen, "render", ROOT / "scenes" / f"{scene}.xml", "--progress", "none", "-o", path, *words],
+                   check=True)
+    return path
+
+
+def make_layers_page(sheen, folder):
+    """A page of pictures with layers and one without: a diffuse box, whose transport is green. One sample of the
+    reference's depth sees nearer and farther than the mean of four."""
+    size, cached = ("--size", "240x160"), ("--accuracy", "0.25", "--spp", "4", "--gather-rays", "256")
+    return compare(sheen, folder / "layers.html", [
+        render(sheen, "furnace", folder / "depth.exr", *size, "--integrator", "path", "--spp", "1", "--aov", "depth"),
+        render(sheen, "furnace", folder / "layers.exr", *size, *cached, "--aov", "depth,normal,accuracy,transport"),
+        render(sheen, "furnace", folder / "plain.exr", *size, *cached)])
+
+
 def make_pages(sheen, folder):
-    """A page of two images, and one of two folders with two pictures each, of another size."""
+    """A page of two images, one of two folders with two pictures each, of another size, and one with layers."""
     for seed, (quality, spp) in enumerate(QUALITIES.items()):
         (folder / quality).mkdir(exist_ok=True)
         for scene, size, path in (("cornell-box", "360x240", f"{quality}.exr"),
                                   ("cornell-box", "180x160", f"{quality}/box.exr"),
                                   ("furnace", "180x120", f"{quality}/round.exr")):
-            subprocess.run([sheen, "render", ROOT / "scenes" / f"{scene}.xml", "--integrator", "path", "--size", size,
-                            "--spp", str(spp), "--seed", str(seed), "--progress", "none", "-o", folder / path],
-                           check=True)
+            render(sheen, scene, folder / path, "--integrator", "path", "--size", size, "--spp", str(spp), "--seed",
+                   str(seed))
     return (compare(sheen, folder / "page.html", [folder / f"{q}.exr" for q in QUALITIES]),
-            compare(sheen, folder / "pictures.html", [folder / q for q in QUALITIES]))
+            compare(sheen, folder / "pictures.html", [folder / q for q in QUALITIES]), make_layers_page(sheen, folder))
 
 
 def main():
@@ -277,7 +350,7 @@ def main():
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(options.keep or temporary).resolve()
         folder.mkdir(parents=True, exist_ok=True)
-        page, pictures = make_pages(options.sheen, folder)
+        page, pictures, layers = make_pages(options.sheen, folder)
         browser = Browser(chromium, pathlib.Path(temporary) / "profile")
         try:
             for name, width, height, phone in (("desk", 1280, 900, False), ("phone", 390, 844, True)):
@@ -292,6 +365,9 @@ def main():
                 browser.open(pictures, width, height, phone)
                 check_choice(browser)
                 browser.picture(folder / f"{name}-pictures.png")
+                browser.open(layers, width, height, phone)
+                check_layers(browser)
+                browser.picture(folder / f"{name}-layers.png")
         finally:
             browser.close()
     print(f"check_compare_page: {len(failures)} of the above failed" if failures else "check_compare_page: all holds")

@@ -24,7 +24,8 @@ static const Option compare_options[] = {
      .name = "html",
      .argument = "FILE",
      .meaning = "Write one self-contained page to look at: the images side by side with a slider, the error map, the "
-                "figures, an exposure control. Of folders whose pictures have names it shows all, to choose from; of "
+                "figures, an exposure control; of EXR files each layer. Of folders whose pictures have names it shows "
+                "all, to choose from; of "
                 "animations the frame with the largest FLIP.",
      .standard = "none",
      .example = "sheen compare --html errors.html reference.exr box.exr",
@@ -145,7 +146,9 @@ static SheenStatus compare_frames(const Comparison *c, Totals *t, json_t *frames
         if (!status) status = sheen_metrics_compute(&reference[1], &image[1], &c->log, &m);
         const SequenceFrame *frame = &c->own.frames[i];
         if (!status && i > 0 && c->own.numbered) status = add_flicker(c, i, reference, image, t);
-        if (!status && c->page) status = compare_page_offer(c->page, c->image, frame, &reference[1], &image[1], &m);
+        if (!status && c->page)
+            status = compare_page_offer(c->page, c->image, frame, c->references.frames[i].path, &reference[1],
+                                        &image[1], &m);
         if (!status) {
             add_frame(t, &m);
             json_t *entry = frame_json(c, frame, &m);

@@ -2,8 +2,10 @@
 #include "compare_page.h"
 
 #include "cli.h"
+#include "compare_layers.h"
 #include "compare_script.h"
 #include "output.h"
+#include "picture_base64.h"
 #include "text_buffer.h"
 
 #include "image/flip.h"
@@ -23,6 +25,7 @@ typedef struct PageEntry {
     uint32_t width, height;
     TextBuffer reference_png, image_png, error_png; // base 64
     TextBuffer reference_hdr, image_hdr;            // base 64
+    TextBuffer reference_layers, image_layers;      // elements
 } PageEntry;
 
 struct ComparePage {
@@ -47,6 +50,8 @@ static void entry_clear_pictures(PageEntry *e)
     text_free(&e->error_png);
     text_free(&e->reference_hdr);
     text_free(&e->image_hdr);
+    text_free(&e->reference_layers);
+    text_free(&e->image_layers);
 }
 
 void compare_page_destroy(ComparePage **page)
@@ -62,18 +67,9 @@ void compare_page_destroy(ComparePage **page)
     *page = NULL;
 }
 
-/** Encodes pixels in base 64. @param format  a name with the ending of the format */
-static SheenStatus encode(const ComparePage *page, const char *format, uint32_t width, uint32_t height,
-                          const Rgb *pixels, TextBuffer *out)
+static SheenStatus encode(const ComparePage *page, const char *format, const SheenImage *image, TextBuffer *out)
 {
-    SheenImageView view = {.width = width, .height = height, .pixels = pixels};
-    uint8_t *data;
-    size_t size;
-    SheenStatus status = sheen_image_encode(format, &view, 0.0f, &page->log, &data, &size);
-    if (status) return status;
-    text_add_base64(out, data, size);
-    free(data);
-    return out->failed ? sheen_fail(&page->log, SHEEN_ERR_NOMEM, "%s: out of memory", page->path) : SHEEN_OK;
+    return picture_base64_add(format, image->width, image->height, image->pixels, page->path, &page->log, out);
 }
 
 /** Black over purple and orange to a pale yellow: its lightness rises evenly with the error. */
@@ -114,7 +110,7 @@ static SheenStatus encode_error(const ComparePage *page, const SheenImage *refer
     if (!status) status = sheen_flip_exposures(&r, &page->log, &exposures);
     if (!status) status = sheen_flip_compute(&r, &x, &exposures, &page->log, map);
     for (size_t i = 0; !status && i < n; ++i) x.pixels[i] = error_color(map[i]);
-    if (!status) status = encode(page, "picture.png", x.width, x.height, x.pixels, out);
+    if (!status) status = encode(page, "picture.png", &x, out);
     free(map);
     sheen_image_free(&r);
     sheen_image_free(&x);
@@ -134,7 +130,8 @@ static PageEntry *open_entry(ComparePage *page)
 }
 
 SheenStatus compare_page_offer(ComparePage *page, const char *name, const SequenceFrame *frame,
-                               const SheenImage *reference, const SheenImage *image, const SheenMetrics *figures)
+                               const char *reference_path, const SheenImage *reference, const SheenImage *image,
+                               const SheenMetrics *figures)
 {
     PageEntry *e = open_entry(page);
     if (!e) return sheen_fail(&page->log, SHEEN_ERR_NOMEM, "%s: out of memory", page->path);
@@ -146,11 +143,12 @@ SheenStatus compare_page_offer(ComparePage *page, const char *name, const Sequen
     e->flip = flip;
     e->width = image->width;
     e->height = image->height;
-    uint32_t w = image->width, h = image->height;
-    SheenStatus status = encode(page, "picture.png", w, h, reference->pixels, &e->reference_png);
-    if (!status) status = encode(page, "picture.png", w, h, image->pixels, &e->image_png);
-    if (!status) status = encode(page, "picture.hdr", w, h, reference->pixels, &e->reference_hdr);
-    if (!status) status = encode(page, "picture.hdr", w, h, image->pixels, &e->image_hdr);
+    SheenStatus status = encode(page, "picture.png", reference, &e->reference_png);
+    if (!status) status = encode(page, "picture.png", image, &e->image_png);
+    if (!status) status = encode(page, "picture.hdr", reference, &e->reference_hdr);
+    if (!status) status = encode(page, "picture.hdr", image, &e->image_hdr);
+    if (!status) status = compare_layers_add(reference_path, "reference", page->path, &page->log, &e->reference_layers);
+    if (!status) status = compare_layers_add(frame->path, "image", page->path, &page->log, &e->image_layers);
     return status ? status : encode_error(page, reference, image, &e->error_png);
 }
 
@@ -234,7 +232,10 @@ static void add_entry(TextBuffer *out, const ComparePage *page, const PageEntry 
     text_add(out, e == first ? e->reference_hdr.text : ""); // the script finds it there
     text_add(out, "</script>\n<script type=\"text/plain\" class=\"image-hdr\">");
     text_add(out, e->image_hdr.text);
-    text_add(out, "</script>\n</section>\n");
+    text_add(out, "</script>\n");
+    if (e == first && e->reference_layers.text) text_add(out, e->reference_layers.text);
+    if (e->image_layers.text) text_add(out, e->image_layers.text);
+    text_add(out, "</section>\n");
 }
 
 static void add_table(TextBuffer *out, const ComparePage *page)

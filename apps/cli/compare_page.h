@@ -18,12 +18,13 @@ ComparePage *compare_page_create(const char *path, const char *reference, SheenL
 /**
  * Offers a frame, whose number is below 0 where it has none; of all that are offered before the next finish the page
  * keeps that with the largest FLIP.
- * @param name  of the operand, borrowed as long as the page
- * Errors: SHEEN_ERR_NOMEM, reported.
+ * @param name            of the operand, borrowed as long as the page
+ * @param reference_path  the reference's file; both files' layers are read here
+ * Errors: those of reading the layers, SHEEN_ERR_NOMEM; reported.
  */
 SHEEN_NODISCARD SheenStatus compare_page_offer(ComparePage *page, const char *name, const SequenceFrame *frame,
-                                               const SheenImage *reference, const SheenImage *image,
-                                               const SheenMetrics *figures);
+                                               const char *reference_path, const SheenImage *reference,
+                                               const SheenImage *image, const SheenMetrics *figures);
 
 /**
  * Ends an operand, or one picture of it.

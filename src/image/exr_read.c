@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/exr.h"
+#include "image/exr_layers.h"
 
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -14,10 +16,11 @@ typedef struct ExrPart {
     bool gray;
 } ExrPart;
 
-/** What the pipeline's last stage needs: where the first pixel of the chunk lies in the data window. */
+/** What the pipeline's last stage needs: where channels go, and where the chunk's first pixel is in the data window. */
 typedef struct ExrTarget {
     const ExrPart *part;
-    SheenImage *out;
+    const ExrPlane *planes; // of the part's channels, in their order
+    int n_planes;
     int64_t x, y;
 } ExrTarget;
 
@@ -107,12 +110,12 @@ static float load_value(const uint8_t *p, uint16_t type)
     return value;
 }
 
-/** Takes one channel of one line of a chunk, whose first pixel goes to row[left], as component c. */
-static void place_line(const uint8_t *line, const exr_coding_channel_info_t *channel, int64_t left, Rgb *row,
-                       int64_t width, int c)
+/** Takes one channel of one line of a chunk, whose first pixel goes to place `left` of a row of `width` pixels. */
+static void place_line(const uint8_t *line, const exr_coding_channel_info_t *channel, int64_t left, float *row,
+                       size_t stride, int64_t width)
 {
     for (int64_t x = left < 0 ? -left : 0; x < channel->width && left + x < width; ++x)
-        (&row[left + x].r)[c] = load_value(line + x * channel->bytes_per_element, channel->data_type);
+        row[(size_t)(left + x) * stride] = load_value(line + x * channel->bytes_per_element, channel->data_type);
 }
 
 /**
@@ -123,7 +126,7 @@ static exr_result_t unpack(exr_decode_pipeline_t *pipeline)
 {
     const ExrTarget *target = pipeline->decoding_user_data;
     const ExrPart *part = target->part;
-    SheenImage *out = target->out;
+    int64_t width = box_width(part->display), height = box_height(part->display);
     int64_t left = (int64_t)part->data.min.x + target->x - part->display.min.x;
     int64_t top = (int64_t)part->data.min.y + target->y - part->display.min.y;
     // Line by line, in each the channels one after another.
@@ -134,10 +137,11 @@ static exr_result_t unpack(exr_decode_pipeline_t *pipeline)
             const exr_coding_channel_info_t *channel = &pipeline->channels[i];
             uint64_t size = (uint64_t)channel->width * (uint64_t)channel->bytes_per_element;
             if (!line || size > size_left) return EXR_ERR_CORRUPT_CHUNK;
-            for (int c = 0; c < 3 && y >= 0 && y < out->height; ++c) {
-                if (!part->channels[c] || strcmp(part->channels[c], channel->channel_name) != 0) continue;
-                place_line(line, channel, left, out->pixels + (size_t)y * out->width, out->width, c);
-            }
+            const ExrPlane *plane = i < target->n_planes ? &target->planes[i] : NULL;
+            if (!plane || strcmp(plane->channel, channel->channel_name) != 0) return EXR_ERR_CORRUPT_CHUNK;
+            if (plane->first && y >= 0 && y < height)
+                place_line(line, channel, left, plane->first + (size_t)(y * width) * plane->stride, plane->stride,
+                           width);
             line += size;
             size_left -= size;
         }
@@ -263,6 +267,48 @@ static SheenStatus read_header(const ImageSource *source, const ExrStream *strea
     return status ? status : choose_channels(source, list, part);
 }
 
+/** Makes a place for each channel of the part, all unwanted. */
+static SheenStatus planes_create(const ImageSource *source, ExrStream *stream, const ExrPart *part,
+                                 const exr_attr_chlist_t **list, ExrPlane **planes)
+{
+    exr_result_t result = exr_get_channels(part->context, part->index, list);
+    if (result) return sheen_exr_fail(stream, result, source->name, source->log);
+    *planes = calloc((size_t)(*list)->num_channels, sizeof **planes);
+    if (!*planes) return sheen_image_no_memory(source->name, source->log);
+    for (int i = 0; i < (*list)->num_channels; ++i) (*planes)[i].channel = (*list)->entries[i].name.str;
+    return SHEEN_OK;
+}
+
+/** Decodes all chunks into the planes. */
+static SheenStatus decode_planes(const ImageSource *source, ExrStream *stream, const ExrPart *part,
+                                 const ExrPlane planes[], int n)
+{
+    exr_decode_pipeline_t pipeline = EXR_DECODE_PIPELINE_INITIALIZER;
+    ExrTarget target = {.part = part, .planes = planes, .n_planes = n};
+    exr_result_t result =
+        part->storage == EXR_STORAGE_TILED ? decode_tiles(&pipeline, &target) : decode_scanlines(&pipeline, &target);
+    exr_decoding_destroy(part->context, &pipeline);
+    return result ? sheen_exr_fail(stream, result, source->name, source->log) : SHEEN_OK;
+}
+
+/** Reads the colour. The picture is the display window: what lies outside of the data window is black. */
+static SheenStatus decode_color(const ImageSource *source, ExrStream *stream, const ExrPart *part, SheenImage *out)
+{
+    const exr_attr_chlist_t *list = NULL;
+    ExrPlane *planes = NULL;
+    SheenStatus status =
+        sheen_image_alloc(source, (uint64_t)box_width(part->display), (uint64_t)box_height(part->display), out);
+    if (!status) status = planes_create(source, stream, part, &list, &planes);
+    for (int i = 0; !status && i < list->num_channels; ++i)
+        for (int c = 0; c < 3; ++c)
+            if (part->channels[c] && strcmp(part->channels[c], planes[i].channel) == 0)
+                planes[i].first = &out->pixels[0].r + c, planes[i].stride = 3;
+    if (!status) status = decode_planes(source, stream, part, planes, list->num_channels);
+    if (!status && part->gray) spread_gray(out);
+    free(planes);
+    return status;
+}
+
 SheenStatus sheen_exr_decode(const ImageSource *source, SheenImage *out)
 {
     ExrStream stream = {.data = source->data, .size = source->size};
@@ -271,18 +317,45 @@ SheenStatus sheen_exr_decode(const ImageSource *source, SheenImage *out)
     exr_result_t result = exr_start_read(&part.context, source->name, &init);
     if (result) return sheen_exr_fail(&stream, result, source->name, source->log);
     SheenStatus status = read_header(source, &stream, &part);
-    // The picture is the display window: what lies outside of the data window is black.
-    if (!status)
-        status = sheen_image_alloc(source, (uint64_t)box_width(part.display), (uint64_t)box_height(part.display), out);
-    if (!status) {
-        exr_decode_pipeline_t pipeline = EXR_DECODE_PIPELINE_INITIALIZER;
-        ExrTarget target = {.part = &part, .out = out};
-        result =
-            part.storage == EXR_STORAGE_TILED ? decode_tiles(&pipeline, &target) : decode_scanlines(&pipeline, &target);
-        if (result) status = sheen_exr_fail(&stream, result, source->name, source->log);
-        if (part.gray) spread_gray(out);
-        exr_decoding_destroy(part.context, &pipeline);
-    }
+    if (!status) status = decode_color(source, &stream, &part, out);
+    exr_finish(&part.context);
+    return status;
+}
+
+/** Reads the channels of a part beside its colour. */
+static SheenStatus decode_layers_of(const ImageSource *source, ExrStream *stream, const ExrPart *part,
+                                    SheenImageLayers *out)
+{
+    uint64_t width = (uint64_t)box_width(part->display), height = (uint64_t)box_height(part->display);
+    const exr_attr_chlist_t *list = NULL;
+    ExrPlane *planes = NULL;
+    SheenStatus status = sheen_image_check_size(source, width, height);
+    if (!status) status = planes_create(source, stream, part, &list, &planes);
+    out->width = (uint32_t)width;
+    out->height = (uint32_t)height;
+    if (!status) status = sheen_exr_list_layers(source, list->num_channels, part->channels, out, planes);
+    if (!status && out->n > 0) status = decode_planes(source, stream, part, planes, list->num_channels);
+    free(planes);
+    return status;
+}
+
+static void forward_errors(void *user, SheenLogLevel level, const char *text)
+{
+    const SheenLog *log = user;
+    if (level == SHEEN_LOG_ERROR && log->fn) log->fn(log->user, level, text);
+}
+
+SheenStatus sheen_exr_decode_layers(const ImageSource *source, SheenImageLayers *out)
+{
+    SheenLog outer = source->log ? *source->log : (SheenLog){0}, errors = {forward_errors, &outer};
+    ImageSource quiet = {source->data, source->size, source->name, &errors}; // reading the colour warns
+    ExrStream stream = {.data = source->data, .size = source->size};
+    exr_context_initializer_t init = sheen_exr_initializer(&stream);
+    ExrPart part = {0};
+    exr_result_t result = exr_start_read(&part.context, source->name, &init);
+    if (result) return sheen_exr_fail(&stream, result, source->name, source->log);
+    SheenStatus status = read_header(&quiet, &stream, &part);
+    if (!status) status = decode_layers_of(&quiet, &stream, &part, out);
     exr_finish(&part.context);
     return status;
 }

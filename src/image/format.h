@@ -33,6 +33,10 @@ typedef struct ImageTarget {
     const SheenLog *log;
 } ImageTarget;
 
+/** Reads the layers of an EXR file, which `out`'s owner frees in failure too. Warnings are left to reading its colour.
+ */
+SHEEN_NODISCARD SheenStatus sheen_exr_decode_layers(const ImageSource *source, SheenImageLayers *out);
+
 /** Which channels of a picture are wanted. */
 typedef enum ImageChannels { IMAGE_RGB, IMAGE_ALPHA } ImageChannels;
 

@@ -154,6 +154,39 @@ SheenStatus sheen_image_read(const char *path, const SheenLog *log, SheenImage *
     return status;
 }
 
+SheenStatus sheen_image_decode_layers(const void *data, size_t size, const char *name, const SheenLog *log,
+                                      SheenImageLayers *out)
+{
+    *out = (SheenImageLayers){0};
+    if (!sheen_format_exr.recognize(data, size)) return SHEEN_OK;
+    SheenStatus status = sheen_exr_decode_layers(&(ImageSource){data, size, name, log}, out);
+    if (status) sheen_image_layers_free(out);
+    return status;
+}
+
+SheenStatus sheen_image_read_layers(const char *path, const SheenLog *log, SheenImageLayers *out)
+{
+    *out = (SheenImageLayers){0};
+    uint8_t *data = NULL;
+    size_t size = 0;
+    SheenStatus status = sheen_file_read(path, log, &data, &size);
+    if (!status) status = sheen_image_decode_layers(data, size, path, log, out);
+    free(data);
+    return status;
+}
+
+void sheen_image_layers_free(SheenImageLayers *layers)
+{
+    for (size_t i = 0; i < layers->n; ++i) {
+        SheenImageLayer *layer = &layers->layers[i];
+        free(layer->name);
+        for (unsigned c = 0; c < layer->n_channels; ++c) free(layer->channels[c]);
+        free(layer->data);
+    }
+    free(layers->layers);
+    *layers = (SheenImageLayers){0};
+}
+
 void sheen_image_spread_alpha(uint8_t *pixels, size_t n)
 {
     for (size_t i = 0; i < n; ++i) {

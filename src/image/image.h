@@ -42,6 +42,22 @@ typedef struct SheenImage {
     Rgb *pixels; // [height][width], linear, row 0 on top; from malloc
 } SheenImage;
 
+/** A layer of an EXR file beside the colour, as read. */
+typedef struct SheenImageLayer {
+    char *name;          // "depth"; that of the channel where it has no layer
+    char *channels[3];   // full names: "depth.Z"
+    unsigned n_channels; // 1 to 3; of more, the first three
+    bool color;          // they are R, G and B
+    float *data;         // [height][width][n_channels]
+} SheenImageLayer;
+
+/** Owned; free with sheen_image_layers_free. */
+typedef struct SheenImageLayers {
+    uint32_t width, height;
+    SheenImageLayer *layers; // in the order of the file
+    size_t n;
+} SheenImageLayers;
+
 /**
  * Writes a picture; the format follows the ending: .exr (float, all layers and attributes), .hdr, .pfm (colour only),
  * .png (8-bit sRGB after `exposure`). The file appears whole or not at all: it is written beside and renamed.
@@ -77,6 +93,20 @@ SHEEN_NODISCARD SheenStatus sheen_image_read(const char *path, const SheenLog *l
 /** The same from memory, the format found by its first bytes; `name` is for messages. */
 SHEEN_NODISCARD SheenStatus sheen_image_decode(const void *data, size_t size, const char *name, const SheenLog *log,
                                                SheenImage *out);
+
+/**
+ * Reads what an EXR file holds beside the colour that sheen_image_read takes; other formats hold nothing. Warnings are
+ * left to that.
+ * @param out  zero on failure
+ * Errors: as sheen_image_read.
+ */
+SHEEN_NODISCARD SheenStatus sheen_image_read_layers(const char *path, const SheenLog *log, SheenImageLayers *out);
+
+/** The same from memory. */
+SHEEN_NODISCARD SheenStatus sheen_image_decode_layers(const void *data, size_t size, const char *name,
+                                                      const SheenLog *log, SheenImageLayers *out);
+
+void sheen_image_layers_free(SheenImageLayers *layers);
 
 /**
  * Reads an 8-bit picture (.png, .jpg, .tga, .bmp) as bytes, not decoded, for textures.

@@ -96,6 +96,30 @@ expect 1 compare --html none/page.html "$P/plain.hdr" "$P/repeat.hdr"; says '^sh
 expect 1 compare --html new.html "$P/plain.hdr" "$P/cmyk.jpg"; says 'CMYK'
 [ ! -e new.html ] || fail "a page of half a comparison"
 
+# Layers of EXR files are on the page too, those of a reference once. The legend needs the range: depths of the furnace
+# lie between its ball and its walls; the accuracy asked for is that of all its points.
+grep -q 'class="[a-z]*-layer"' page.html && fail "pictures without layers have some"
+F=(render "$SOURCE/scenes/furnace.xml" --size 24x16 --spp 4 --progress none --gather-rays 64)
+expect 0 "${F[@]}" --integrator path --aov depth -o r.exr
+expect 0 "${F[@]}" --accuracy 0.25 --aov depth,normal,accuracy,transport -o a.exr
+expect 0 "${F[@]}" -o b.exr
+expect 0 compare --html layers.html r.exr a.exr r.exr b.exr; silent
+[ "$(grep -o 'class="[a-z]*-layer" data-kind="[a-z]*" data-name="[A-Za-z.]*"' layers.html | cut -d '"' -f 2,4,6 | tr '"' ' ')" = "\
+reference-layer data depth.Z
+image-layer data accuracy.V
+image-layer data depth.Z
+image-layer data normal.X
+image-layer data normal.Y
+image-layer data normal.Z
+image-layer color transport
+image-layer data depth.Z" ] || fail "not each layer of each file"
+grep -q 'data-label="accuracy (V)" data-min="0[^"]*" data-max="0.25[^"]*" data-unit="" data-note="a of the records' layers.html ||
+    fail "accuracy lacks its range or its note"
+grep -q 'data-label="depth (Z)" data-min="[0-9.]*" data-max="[0-9.]*" data-unit="m"' layers.html || fail "depth lacks its unit"
+[ "$(grep -c 'data-label="transport (RGB)" data-note="red[^"]*">Iz9S' layers.html)" -eq 1 ] || fail "transport is no colour"
+[ "$(grep -c '<img hidden .* src="data:image/png;base64,iVBOR' layers.html)" -eq 7 ] || fail "data are no PNG pictures"
+grep -Eq 'https?://|src="[^d]|<link' layers.html && fail "the page with layers wants something from elsewhere"
+
 # Refused.
 refused REFERENCE compare
 refused IMAGE compare "$P/plain.hdr"

@@ -168,6 +168,46 @@ static void test_exr_holds_layers_and_attributes(void **state)
     assert_non_null(memmem(head, n, "sheenAttributeWithAQuiteLongNameIndeed", 39));
 }
 
+static void assert_layer(const SheenImageLayer *layer, const char *name, const char *first, const char *last)
+{
+    assert_string_equal(layer->name, name);
+    assert_string_equal(layer->channels[0], first);
+    assert_string_equal(layer->channels[layer->n_channels - 1], last);
+}
+
+/** Layers come back by the alphabet, the channels of colours as R, G, B. Other formats have none. */
+static void test_layers_are_read(void **state)
+{
+    (void)state;
+    Rgb pixels[height][width];
+    make_picture(pixels);
+    static float depth[height * width], normal[height * width * 3], albedo[height * width * 3];
+    for (int i = 0; i < height * width; ++i) depth[i] = 0.37f * (float)i - 5.0f;
+    for (int i = 0; i < height * width * 3; ++i) normal[i] = 1.0f / (float)(i + 1), albedo[i] = (float)(i % 3) + 0.01f;
+    SheenLayer layers[] = {{"normal", 3, "XYZ", normal}, {"depth", 1, "Z", depth}, {"albedo", 3, "RGB", albedo}};
+    SheenImageView view = {width, height, &pixels[0][0], layers, 3, NULL, 0};
+    char *path = temporary_path(".exr");
+    assert_int_equal(sheen_image_write(path, &view, 0.0f, NULL), SHEEN_OK);
+    SheenImageLayers read;
+    assert_int_equal(sheen_image_read_layers(path, NULL, &read), SHEEN_OK);
+    unlink(path);
+    assert_int_equal(read.n, 3);
+    assert_true(read.width == width && read.height == height);
+    assert_layer(&read.layers[0], "albedo", "albedo.R", "albedo.B");
+    assert_layer(&read.layers[1], "depth", "depth.Z", "depth.Z");
+    assert_layer(&read.layers[2], "normal", "normal.X", "normal.Z");
+    assert_true(read.layers[0].color && !read.layers[1].color && !read.layers[2].color);
+    assert_memory_equal(read.layers[0].data, albedo, sizeof albedo);
+    assert_memory_equal(read.layers[1].data, depth, sizeof depth);
+    assert_memory_equal(read.layers[2].data, normal, sizeof normal);
+    sheen_image_layers_free(&read);
+    path = temporary_path(".hdr");
+    assert_int_equal(sheen_image_write(path, &view, 0.0f, NULL), SHEEN_OK);
+    assert_int_equal(sheen_image_read_layers(path, NULL, &read), SHEEN_OK);
+    assert_int_equal(read.n, 0);
+    unlink(path);
+}
+
 /** However well a chunk compresses: noise of ever more bits, so that some end with as many bytes as they began with. */
 static void test_exr_keeps_noise(void **state)
 {
@@ -212,10 +252,15 @@ static void test_srgb_curve(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_float_formats_are_exact),  cmocka_unit_test(test_hdr_keeps_eight_bits_of_the_largest),
-        cmocka_unit_test(test_hdr_survives_all_numbers), cmocka_unit_test(test_png_is_srgb_after_exposure),
-        cmocka_unit_test(test_files_do_not_vary),        cmocka_unit_test(test_exr_holds_layers_and_attributes),
-        cmocka_unit_test(test_exr_keeps_noise),          cmocka_unit_test(test_srgb_curve),
+        cmocka_unit_test(test_float_formats_are_exact),
+        cmocka_unit_test(test_hdr_keeps_eight_bits_of_the_largest),
+        cmocka_unit_test(test_hdr_survives_all_numbers),
+        cmocka_unit_test(test_png_is_srgb_after_exposure),
+        cmocka_unit_test(test_files_do_not_vary),
+        cmocka_unit_test(test_exr_holds_layers_and_attributes),
+        cmocka_unit_test(test_layers_are_read),
+        cmocka_unit_test(test_exr_keeps_noise),
+        cmocka_unit_test(test_srgb_curve),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
