@@ -23,7 +23,7 @@ static const LayerNote notes[] = {
     {"records", "", "white: irradiance records, orange: radiance records"},
     {"accuracy", "", "a of the records, smaller is finer"},
     {"coverage", "records", "that contribute, in the mean"},
-    {"error", "", "estimated relative error of interpolation"},
+    {"error", "", "expected of the records' light, relative"},
     {"transport", "", "red: radiance records, green: irradiance records, blue: rays along mirrors, glass, gloss"},
 };
 enum { n_notes = sizeof notes / sizeof notes[0] };

@@ -226,7 +226,7 @@ const Option render_options[] = {
      .argument = "NAME,...",
      .meaning = "More layers in .exr files: depth, position, normal, albedo, uv, primitive, direct, indirect, and of "
                 "the cache records (as dots; irradiance white, radiance orange), accuracy (the value of A), coverage "
-                "(number of contributing records), error (estimated interpolation error, relative) and transport (what "
+                "(number of contributing records), error (expected of their light, relative) and transport (what "
                 "indirect light was asked of: radiance records red, irradiance records green, rays followed along "
                 "mirrors, glass and sampled gloss blue).",
      .standard = "none",

@@ -22,7 +22,7 @@ typedef enum SheenAov {
     // Means over the shading points of a pixel's samples that records serve, each counting as one; 0 without any:
     SHEEN_AOV_ACCURACY, // the value of a of the contributing records
     SHEEN_AOV_COVERAGE, // number of contributing records
-    SHEEN_AOV_ERROR,    // estimated interpolation error, relative
+    SHEEN_AOV_ERROR,    // expected error of what they say of the indirect light, relative, root mean square
     // Shares of a pixel's indirect light by where it was asked for, whatever came of it: of radiance records (red), of
     // irradiance records (green), and by following a ray along a mirror, glass or a sampled glossy lobe (blue). Each
     // question counts as one; 0 where nothing was asked.
