@@ -67,9 +67,8 @@ uint64_t sheen_direct_add(const SheenWork *work, size_t n, const DiffusePoint po
 // strongest is hidden. Two samples each cost less than the choice did and leave half its error.
 LightPlan sheen_light_plan(const SheenWork *work)
 {
-    enum { FEW = 4 };
     uint32_t n = sheen_lights_count(work->lights), wanted = work->options.light_samples, deltas = 0;
-    if (n > FEW || (wanted > 0 && wanted < n)) return (LightPlan){0, wanted ? wanted : FEW};
+    if (n > SHEEN_FEW_LIGHTS || (wanted > 0 && wanted < n)) return (LightPlan){0, wanted ? wanted : SHEEN_FEW_LIGHTS};
     if (wanted == 0) return (LightPlan){n, n > 1 ? 2 : 1};
     for (uint32_t i = 0; i < n; ++i) deltas += sheen_light_is_delta(work->lights, i);
     return (LightPlan){n, deltas < n ? (wanted - deltas) / (n - deltas) : 1};

@@ -18,6 +18,9 @@ typedef struct LightPlan {
     uint32_t samples; // of each light, but 1 of those without size; or in all
 } LightPlan;
 
+/** So many lights are asked one after another. */
+enum { SHEEN_FEW_LIGHTS = 4 };
+
 LightPlan sheen_light_plan(const SheenWork *work);
 
 /** Where the random numbers of a shading point's light samples are. */

@@ -100,12 +100,22 @@ static Rgb caustic_of(const SheenWork *work, const Followed *f)
 
 // A Kronecker sequence over the gather's light samples, in fixed point: neighboring strata ask distant parts of the
 // lights. The steps are the powers of 1 / 1.2207..., the root of x^4 = x + 1. Source: roberts2018-quasirandom.
-static LightNumbers light_numbers(uint32_t key, uint32_t use, uint32_t index)
+// @param light  that is asked; SHEEN_NONE: one is chosen
+static LightNumbers light_numbers(uint32_t key, uint32_t use, uint32_t index, uint32_t light)
 {
-    uint32_t shift = hash_combine(key, KEY_LIGHT + (use << 8)), x = shift, y = hash_u32(shift), z = hash_u32(y);
-    return (LightNumbers){SHEEN_NONE,
+    uint32_t shift = hash_combine(key, KEY_LIGHT + (use << 8)) ^ (light == SHEEN_NONE ? 0 : hash_u32(light + 1));
+    uint32_t x = shift, y = hash_u32(shift), z = hash_u32(y);
+    return (LightNumbers){light,
                           hash_to_unit(x + index * 0xd1b54a33u),
                           {hash_to_unit(y + index * 0xabc98388u), hash_to_unit(z + index * 0x8cb92ba7u)}};
+}
+
+// The lights that each hit asks one after another; 0: one is chosen. A choice goes by what lights would send if nothing
+// was in the way: a strong one in the next room would be asked in place of the weak one in this.
+static uint32_t lights_each(const SheenWork *work)
+{
+    uint32_t n = sheen_lights_count(work->lights);
+    return n <= SHEEN_FEW_LIGHTS ? n : 0;
 }
 
 // What one ray of the gather, or of an extension of one of its vertices, ended on.
@@ -121,9 +131,12 @@ static void receive(const SheenWork *work, const Followed *f, Rgb weight, uint32
     if (bounces == 0) return;
     bool lit = h->glossy && f->glossy && sheen_lights_count(work->lights) > 0;
     if (lit) {
-        LightNumbers numbers = light_numbers(h->key, bounces, ray);
-        Rgb L = sheen_glossy_lit_once(work, &f->surface, v3_neg(f->direction), numbers, stats);
-        if (rgb_finite(L)) h->glossy[cell] = rgb_add(h->glossy[cell], rgb_mul(through, L));
+        uint32_t each = lights_each(work);
+        for (uint32_t turn = 0; turn < (each ? each : 1); ++turn) {
+            LightNumbers numbers = light_numbers(h->key, bounces, ray, each ? turn : SHEEN_NONE);
+            Rgb L = sheen_glossy_lit_once(work, &f->surface, v3_neg(f->direction), numbers, stats);
+            if (rgb_finite(L)) h->glossy[cell] = rgb_add(h->glossy[cell], rgb_mul(through, L));
+        }
     }
     if (!f->scatters) return;
     Rgb reflected = rgb_scale(rgb_mul(through, f->point.reflectance), SHEEN_INV_PI);
@@ -328,12 +341,15 @@ void sheen_hemisphere_direct(const SheenWork *work, size_t first, uint32_t sampl
         h->points[n] = v->point;
         h->irradiance[n++] = rgb_gray(0.0f);
     }
-    for (uint32_t s = 0; s < samples; ++s) {
+    uint32_t each = lights_each(work), turns = each ? each : samples;
+    for (uint32_t turn = 0; turn < turns; ++turn) {
         size_t i = 0;
         for (v = h->vertices + first; v < end; ++v)
-            if (!v->lit) h->numbers[i++] = light_numbers(h->key, v->bounces, v->ray * samples + s);
-        stats->rays_shadow +=
-            sheen_direct_add(work, n, h->points, h->numbers, 1.0f / (float)samples, &h->direct, h->irradiance);
+            if (!v->lit)
+                h->numbers[i++] = each ? light_numbers(h->key, v->bounces, v->ray, turn)
+                                       : light_numbers(h->key, v->bounces, v->ray * samples + turn, SHEEN_NONE);
+        float share = each ? 1.0f : 1.0f / (float)samples;
+        stats->rays_shadow += sheen_direct_add(work, n, h->points, h->numbers, share, &h->direct, h->irradiance);
     }
     size_t i = 0;
     for (v = h->vertices + first; v < end; ++v)
@@ -361,7 +377,7 @@ static Rgb own_direct(const SheenWork *work, const DiffusePoint *point, Hemisphe
     for (size_t i = 0; i < n; ++i) {
         h->points[i] = *point;
         h->irradiance[i] = rgb_gray(0.0f);
-        h->numbers[i] = light_numbers(h->key, KEY_OWN, (uint32_t)i);
+        h->numbers[i] = light_numbers(h->key, KEY_OWN, (uint32_t)i, SHEEN_NONE);
     }
     stats->rays_shadow += sheen_direct_add(work, n, h->points, h->numbers, 1.0f / (float)n, &h->direct, h->irradiance);
     Rgb E = rgb_gray(0.0f);

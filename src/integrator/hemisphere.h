@@ -103,7 +103,8 @@ size_t sheen_hemisphere_refine(const SheenWork *work, const DiffusePoint *point,
  */
 size_t sheen_hemisphere_extend(const SheenWork *work, float near, Hemisphere *h, SheenStats *stats);
 
-/** Adds the direct light at vertices [first, n_vertices) to L, `samples` light samples each. */
+/** Adds the direct light at vertices [first, n_vertices) to L: of few lights one sample of each, else `samples` of
+ * lights that are chosen. */
 void sheen_hemisphere_direct(const SheenWork *work, size_t first, uint32_t samples, Hemisphere *h, SheenStats *stats);
 
 /**

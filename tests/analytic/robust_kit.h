@@ -30,11 +30,12 @@ static inline void robust_write(const SheenFilm *film, const char *name, const c
     const char *folder = getenv("SHEEN_PICTURES");
     if (!folder) return;
     char path[512];
+    float exposure = log2f(0.3f / maxf((float)film_mean(film), 1e-20f));
     SheenImageView view = {.width = film->width, .height = film->height, .pixels = film->color};
     snprintf(path, sizeof path, "%s/%s-%s.pfm", folder, name, what);
     assert_int_equal(sheen_image_write(path, &view, 0.0f, &kit_log_sink), SHEEN_OK);
     snprintf(path, sizeof path, "%s/%s-%s.png", folder, name, what);
-    assert_int_equal(sheen_image_write(path, &view, 0.0f, &kit_log_sink), SHEEN_OK);
+    assert_int_equal(sheen_image_write(path, &view, exposure, &kit_log_sink), SHEEN_OK);
 }
 
 /** Mean of two pictures, into the first. */
