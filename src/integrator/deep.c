@@ -16,14 +16,14 @@ static const SheenStrata deep_strata = {.rings = DEEP_RINGS, .sectors = DEEP_SEC
 enum {
     PROBES = 24,    // rays that estimate the radius of a record before it is placed
     FOLLOWED = 12,  // hits of those that are looked at next
+    GRAZING = 2,    // rings of the grazing rays that find what stands beside a record: up to 24 degrees
     KEPT = 4,       // deep records that a stored hit reads
     ROUNDS_MAX = 3, // of placing records at hits that no record covers
     BUDGET = 2500,  // records of the first round; where it does not suffice all sizes grow
 };
 static const float growth = 1.5f;
 // Sizes in units of the scale: the median distance that light goes between surfaces.
-static const float reach_min = 0.03f, reach_max = 0.25f, cell_min = 0.03f, near_cells = 3.5f;
-static const float cell_per_distance = 0.2f;
+static const float reach_min = 0.03f, reach_max = 0.25f, near = 0.105f;
 
 /** What a stratum of a deep gather saw. */
 typedef struct DeepCell {
@@ -39,6 +39,11 @@ typedef struct DeepCell {
                        // gather's own point for a guess
 } DeepCell;
 
+/** What stands up beside a record in the way of a sector's grazing ray, in the record's local frame. */
+typedef struct Horizon {
+    float distance, height; // metres along the surface and above it; INFINITY for the sky
+} Horizon;
+
 struct SheenDeep {
     const SheenWork *work;
     unsigned bounces;
@@ -47,10 +52,11 @@ struct SheenDeep {
     SheenRecordStore *store;
     DiffusePoint *points;                      // [records]
     DeepCell *cells;                           // [records][strata], freed after the solution
+    Horizon *horizon;                          // [gathered records][DEEP_SECTORS]
+    float *nearest;                            // [gathered records] least distance of its horizon
     IrradianceLight *light[SHEEN_DEEP_LEVELS]; // light[i][record] holds k = bounces - i
     Rgb mean[SHEEN_DEEP_LEVELS];               // over all records: a guess where there is none
     HotSpots hot;
-    SheenMemo *memo;
     uint32_t point_capacity, gathered;
 };
 
@@ -106,10 +112,44 @@ static SheenStatus create_store(SheenDeep *d)
     return sheen_store_create(deep_accuracy, false, &d->work->scene->bounds, &d->store);
 }
 
+// Whether something stands between a record and a point of its surface, as the record's grazing rays saw it. A surface
+// that bends up to the point is not in the way.
+static bool is_behind(const SheenDeep *d, uint32_t record, Vec3 p)
+{
+    const float before = 0.95f;              // of the distance: a wall that the point lies on is not in its way
+    if (record >= d->gathered) return false; // nothing is known yet
+    const Record *r = &d->store->records[record];
+    Vec3 v = v3_sub(p, r->p);
+    if (!(v3_length2(v) > sqrf(d->nearest[record]))) return false;
+    Frame f = frame_from_normal(r->n);
+    Vec3 l = frame_to_local(&f, v);
+    float turn = atan2f(l.y, l.x) * (0.5f * SHEEN_INV_PI);
+    unsigned sector = (unsigned)(DEEP_SECTORS * (turn < 0.0f ? turn + 1.0f : turn)) % DEEP_SECTORS;
+    const Horizon *h = &d->horizon[(size_t)record * DEEP_SECTORS + sector];
+    return h->distance < before * hypotf(l.x, l.y) && h->height > l.z;
+}
+
+// The records that serve a point and are not behind a wall. Their reach is wide: without the test light would leak
+// along the floor, under thin walls.
+static void find(const SheenDeep *d, Vec3 p, Vec3 n, Contributors *out)
+{
+    Contributors all;
+    sheen_store_find(d->store, p, n, 0.0f, &all);
+    out->n = out->cover = 0;
+    out->weight_sum = 0.0f;
+    for (unsigned i = 0; i < all.n; ++i) {
+        if (is_behind(d, all.record[i], p)) continue;
+        out->record[out->n] = all.record[i];
+        out->weight[out->n++] = all.weight[i];
+        out->weight_sum += all.weight[i];
+    }
+    out->cover = out->n;
+}
+
 static bool covered(const SheenDeep *d, Vec3 p, Vec3 n)
 {
     Contributors c;
-    sheen_store_find(d->store, p, n, 0.0f, &c);
+    find(d, p, n, &c);
     return c.n > 0;
 }
 
@@ -163,6 +203,23 @@ static Rgb take_light(Hemisphere *h, size_t cell)
     return L;
 }
 
+// Takes down what the grazing rays of a gather came to.
+static void set_horizon(SheenDeep *d, uint32_t record, const Hemisphere *h)
+{
+    d->nearest[record] = INFINITY;
+    for (unsigned k = 0; k < DEEP_SECTORS; ++k) {
+        Horizon *out = &d->horizon[(size_t)record * DEEP_SECTORS + k];
+        *out = (Horizon){INFINITY, INFINITY};
+        for (unsigned ring = DEEP_RINGS - GRAZING; ring < DEEP_RINGS; ++ring) {
+            size_t cell = k * DEEP_RINGS + ring;
+            Vec3 l = h->directions[cell];
+            float along = h->distance[cell] * hypotf(l.x, l.y);
+            if (along < out->distance) *out = (Horizon){along, h->distance[cell] * l.z};
+        }
+        d->nearest[record] = minf(d->nearest[record], out->distance);
+    }
+}
+
 static void set_vertex(const GatherVertex *v, bool turned, DeepCell *c)
 {
     c->p = v->point.origin;
@@ -184,6 +241,7 @@ static void gather_task(void *user, size_t item, unsigned worker)
     memset(h->apart, 0, h->cells * sizeof *h->apart);
     h->glossy = h->apart;
     sheen_hemisphere_trace(work, &d->points[record], 2, h, stats); // what turns goes on once
+    set_horizon(d, record, h);
     sheen_hemisphere_add_caustics(work, &d->points[record], 1.0f, h, stats);
     DeepCell *cells = cells_of(d, record);
     for (size_t i = 0; i < h->cells; ++i) {
@@ -212,7 +270,7 @@ static void link_task(void *user, size_t item, unsigned worker)
         DeepCell *c = &cells[i];
         if (rgb_is_black(c->weight) || c->share[0] > 0.0f) continue;
         Contributors found;
-        sheen_store_find(d->store, c->p, c->n, 0.0f, &found);
+        find(d, c->p, c->n, &found);
         float sum = 0.0f;
         for (int slot = 0; slot < KEPT; ++slot) {
             unsigned best = found.n;
@@ -247,8 +305,12 @@ static SheenStatus gather_new(SheenDeep *d, DeepTask *task)
 {
     uint32_t n = d->store->n;
     DeepCell *grown = realloc(d->cells, (size_t)n * strata_count(deep_strata) * sizeof *grown);
-    if (!grown) return SHEEN_ERR_NOMEM;
-    d->cells = grown;
+    if (grown) d->cells = grown;
+    Horizon *horizon = realloc(d->horizon, (size_t)n * DEEP_SECTORS * sizeof *horizon);
+    if (horizon) d->horizon = horizon;
+    float *nearest = realloc(d->nearest, (size_t)n * sizeof *nearest);
+    if (nearest) d->nearest = nearest;
+    if (!grown || !horizon || !nearest) return SHEEN_ERR_NOMEM;
     task->first = d->gathered;
     d->gathered = n;
     SheenPool *pool = d->work->pool;
@@ -447,7 +509,6 @@ SheenStatus sheen_deep_create(const SheenWork *work, const DiffusePoint seeds[],
         .deep = d, .scratch = calloc(workers, sizeof(Hemisphere)), .stats = calloc(workers, sizeof(SheenStats))};
     Queue seed_hits = {0};
     SheenStatus status = create_store(d);
-    if (status == SHEEN_OK) status = sheen_memo_create(&d->memo);
     if (!task.scratch || !task.stats) status = SHEEN_ERR_NOMEM;
     for (unsigned i = 0; i < workers && status == SHEEN_OK; ++i)
         if (!sheen_hemisphere_reserve(&task.scratch[i], deep_strata)) status = SHEEN_ERR_NOMEM;
@@ -473,54 +534,29 @@ void sheen_deep_destroy(SheenDeep **deep)
     SheenDeep *d = deep ? *deep : NULL;
     if (!d) return;
     sheen_store_destroy(&d->store);
-    sheen_memo_destroy(&d->memo);
     for (int i = 0; i < SHEEN_DEEP_LEVELS; ++i) free(d->light[i]);
     free(d->points);
     free(d->cells);
+    free(d->horizon);
+    free(d->nearest);
     free(d);
     *deep = NULL;
 }
 
 // ---- reading ----------------------------------------------------------------------------------------------------
 
-// @return false when no record covers the point.
-static bool interpolate(const SheenDeep *d, Vec3 p, Vec3 n, float slack, int level, Rgb *E)
+Rgb sheen_deep_irradiance(const SheenDeep *d, Vec3 p, Vec3 n, int k)
 {
     Contributors c;
-    sheen_store_find(d->store, p, n, slack, &c);
-    *E = sheen_irradiance_interpolate(d->store, d->light[level], &c, p, n);
-    return c.n > 0;
-}
-
-DeepQuery sheen_deep_ask(const SheenDeep *d, Vec3 p, Vec3 n, float distance, int k, uint32_t hash)
-{
-    if (k < 0) return (DeepQuery){.level = -1};
-    DeepQuery query = {.p = p, .n = n, .level = (int)d->bounces - k};
-    float size = maxf(cell_per_distance * distance, cell_min * d->scale);
-    Frame f = frame_from_normal(n);
-    float u = hash_to_unit(hash) - 0.5f, v = hash_to_unit(hash_u32(hash ^ 0x2545f491u)) - 0.5f;
-    Vec3 q = v3_mad(v3_mad(p, u * size, f.t), v * size, f.b);
-    query.cell = sheen_memo_cell(q, n, size, (uint32_t)query.level);
-    sheen_memo_prefetch(d->memo, query.cell.key);
-    return query;
-}
-
-Rgb sheen_deep_answer(const SheenDeep *d, const DeepQuery *query)
-{
-    const Rgb uncovered = rgb_gray(-1.0f); // in the memo: no record covers the cell's centre
-    Rgb E = rgb_gray(0.0f);
-    if (query->level < 0) return E;
-    if (!sheen_memo_get(d->memo, query->cell.key, &E)) {
-        if (!interpolate(d, query->cell.center, query->cell.n, query->cell.depth, query->level, &E)) E = uncovered;
-        E = sheen_memo_put(d->memo, query->cell.key, E);
-    }
-    if (E.r < 0.0f && !interpolate(d, query->p, query->n, 0.0f, query->level, &E)) E = d->mean[query->level];
-    return E;
+    if (k < 0) return rgb_gray(0.0f);
+    int level = (int)d->bounces - k;
+    find(d, p, n, &c);
+    return c.n > 0 ? sheen_irradiance_interpolate(d->store, d->light[level], &c, p, n) : d->mean[level];
 }
 
 float sheen_deep_near(const SheenDeep *d)
 {
-    return near_cells * cell_min * d->scale;
+    return near * d->scale;
 }
 
 const HotSpots *sheen_deep_hot_spots(const SheenDeep *d)

@@ -6,7 +6,6 @@
 
 #include "integrator/follow.h"
 #include "integrator/hot_spot.h"
-#include "integrator/memo.h"
 #include "integrator/work.h"
 
 typedef struct SheenDeep SheenDeep;
@@ -25,26 +24,13 @@ void sheen_deep_destroy(SheenDeep **deep);
 /** Sky and k bounces: how many of the highest k can be read: k, k - 1 and k - 2 for near hits that go on. */
 enum { SHEEN_DEEP_LEVELS = 3 };
 
-/** A look-up in the memo grid, in two steps so that many of them wait for memory together. */
-typedef struct DeepQuery {
-    MemoCell cell;
-    Vec3 p, n; // where it was asked
-    int level; // which of the solutions; below 0 for none: the answer is black
-} DeepQuery;
-
 /**
- * Asks for the irradiance of the sky and of up to k bounces at a gather's hit, without direct light, from the memo
- * grid: the mean of a cell of the size of what a ray of the gather stands for; at the point itself where the cell's
- * centre lies beyond all records, over an edge or off a curved surface.
- * @param distance  length of the ray, metres
- * @param k         in (bounces - SHEEN_DEEP_LEVELS, bounces]; below 0 it is black
- * @param hash      moves the look-up by up to half a cell, so that the cells' edges do not show
+ * The irradiance of the sky and of up to k bounces at a point, without direct light, from the records around it that no
+ * wall hides; where there is none, the mean over all.
+ * @param k  in (bounces - SHEEN_DEEP_LEVELS, bounces]; below 0 it is black
  * Thread-safe; a pure function of its arguments.
  */
-DeepQuery sheen_deep_ask(const SheenDeep *deep, Vec3 p, Vec3 n, float distance, int k, uint32_t hash);
-
-/** @return the answer, W/m^2. Thread-safe. */
-Rgb sheen_deep_answer(const SheenDeep *deep, const DeepQuery *query);
+Rgb sheen_deep_irradiance(const SheenDeep *deep, Vec3 p, Vec3 n, int k);
 
 /** Distance below which a gather's hit is too near for deep records: one more real vertex is worth its ray. Metres. */
 float sheen_deep_near(const SheenDeep *deep);

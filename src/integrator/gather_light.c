@@ -14,18 +14,10 @@ enum {
 static void add_deep_light(const SheenDeep *deep, Hemisphere *h)
 {
     if (!deep) return;
-    enum { BLOCK = 64 };
-    DeepQuery queries[BLOCK];
-    for (size_t first = 0; first < h->n_vertices; first += BLOCK) {
-        const GatherVertex *v = h->vertices + first;
-        size_t n = h->n_vertices - first < BLOCK ? h->n_vertices - first : BLOCK;
-        for (size_t i = 0; i < n; ++i)
-            queries[i] = sheen_deep_ask(deep, v[i].point.p, v[i].point.n, v[i].distance, (int)v[i].bounces - 1,
-                                        hash_combine(h->key, v[i].ray));
-        for (size_t i = 0; i < n; ++i) {
-            Rgb E = rgb_scale(sheen_deep_answer(deep, &queries[i]), diffuse_point_open(&v[i].point));
-            h->L[v[i].cell] = rgb_add(h->L[v[i].cell], rgb_mul(v[i].weight, E));
-        }
+    for (size_t i = 0; i < h->n_vertices; ++i) {
+        const GatherVertex *v = &h->vertices[i];
+        Rgb E = sheen_deep_irradiance(deep, v->point.p, v->point.n, (int)v->bounces - 1);
+        h->L[v->cell] = rgb_mad(h->L[v->cell], diffuse_point_open(&v->point), rgb_mul(v->weight, E));
     }
 }
 
@@ -47,8 +39,8 @@ static void light_vertices(const SheenWork *work, const SheenDeep *deep, Hemisph
 // The hot spots that matter at a point, by the mean radiance about it as the deep records know it.
 static void choose_guide(const SheenWork *work, const SheenDeep *deep, const DiffusePoint *p, Hemisphere *h)
 {
-    DeepQuery query = sheen_deep_ask(deep, p->p, p->n, 0.0f, (int)work->options.bounces - 1, 0);
-    float mean = SHEEN_INV_PI * rgb_luminance(sheen_deep_answer(deep, &query));
+    Rgb E = sheen_deep_irradiance(deep, p->p, p->n, (int)work->options.bounces - 1);
+    float mean = SHEEN_INV_PI * rgb_luminance(E);
     sheen_guide_choose(sheen_deep_hot_spots(deep), p->p, &h->frame, h->strata, mean, SHEEN_GATHER_ERROR, &h->guide);
 }
 

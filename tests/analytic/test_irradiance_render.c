@@ -189,7 +189,7 @@ static void test_tiny_pictures(void **state)
 }
 
 // A doll's house and a hall a thousand times larger look the same. Scales by powers of two change no rounding; others
-// do, and give the memo's cells other sizes. Where all coordinates are below 1/32 m rays leave surfaces by 15
+// do. Where all coordinates are below 1/32 m rays leave surfaces by 15
 // micrometres, which is 1.5 % of the smallest room.
 static void test_scale_does_not_show(void **state)
 {

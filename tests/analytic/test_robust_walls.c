@@ -76,62 +76,92 @@ static double share_off(const SheenFilm *a, const SheenFilm *b)
     return (double)off / (double)n;
 }
 
+static double gap_share_off(const Stage *open, const Stage *shut, bool clamping, const char *name)
+{
+    SheenRenderSettings settings = robust_settings(128, 128);
+    settings.options.neighbor_clamping = clamping;
+    SheenStats stats;
+    SheenFilm *a = stage_render(open, &settings, &stats), *b = stage_render(shut, &settings, NULL);
+    double off = share_off(a, b);
+    show("%s: %.2f %% of pixels off, %u records\n", name, 100 * off, (unsigned)stats.records);
+    robust_write(a, name, "open");
+    robust_write(b, name, "shut");
+    sheen_film_destroy(&a);
+    sheen_film_destroy(&b);
+    return off;
+}
+
+// The light that comes through a gap of a millimetre is 2 % of what the dim room has: the rooms with and without it
+// look the same but for the gap itself, in all but 0.07 % of the pixels. Where deep records serve what lies behind a
+// wall it is 1.3 %; the picture's records do not reach so far, with clamping or without.
 static void test_gap(void **state)
 {
     (void)state;
-    SheenRenderSettings settings = robust_settings(128, 128);
-    Stage shut = two_rooms(0.0f, 20.0f);
-    const float gaps[] = {1e-4f, 1e-3f, 1e-2f};
-    for (int i = 0; i < 3; ++i) {
-        Stage open = two_rooms(gaps[i], 20.0f);
-        for (int clamping = 1; clamping >= 0; --clamping) {
-            settings.options.neighbor_clamping = clamping;
-            SheenStats stats;
-            SheenFilm *a = stage_render(&open, &settings, &stats), *b = stage_render(&shut, &settings, NULL);
-            show("gap %g, clamping %d: %.2f %% of pixels off, %u records\n", (double)gaps[i], clamping,
-                 100 * share_off(a, b), (unsigned)stats.records);
-            robust_write(a, clamping ? "gap-clamped" : "gap-free", i == 0 ? "tenth" : i == 1 ? "mm" : "cm");
-            robust_write(b, clamping ? "gap-clamped" : "gap-free", "shut");
-            sheen_film_destroy(&a);
-            sheen_film_destroy(&b);
-        }
-        if (getenv("SHEEN_SPP")) robust_measure(&open, &settings, 64, "gap-open");
-        stage_free(&open);
+    Stage shut = two_rooms(0.0f, 20.0f), open = two_rooms(1e-3f, 20.0f), crack = two_rooms(1e-4f, 20.0f);
+    assert_true(gap_share_off(&open, &shut, true, "gap") < 0.005);
+    assert_true(gap_share_off(&open, &shut, false, "gap-without-clamping") < 0.005);
+    assert_true(gap_share_off(&crack, &shut, true, "crack") < 0.005);
+    if (getenv("SHEEN_SPP")) {
+        SheenRenderSettings settings = robust_settings(128, 128);
+        robust_measure(&open, &settings, 0, "gap");
     }
     stage_free(&shut);
+    stage_free(&open);
+    stage_free(&crack);
 }
 
-/** The inside of a closed box with a wall of some thickness, lit on one side of it alone. */
-static Stage thin_wall(float thickness, bool seen_lit)
+// A lamp that is hidden behind a wall, a hundred thousand times as strong as the one that is seen. Hits of gathers ask
+// both: a choice by what they would send without the wall left a quarter of the light out, and blocks off by 2.7.
+static void test_hidden_lamp(void **state)
+{
+    (void)state;
+    Stage strong = two_rooms(0.0f, 1e5f), weak = two_rooms(0.0f, 1.0f);
+    SheenRenderSettings settings = robust_settings(64, 64);
+    SheenFilm *a = stage_render(&strong, &settings, NULL), *b = stage_render(&weak, &settings, NULL);
+    Robustness r;
+    robust_compare(a, b, &r);
+    show("hidden lamp: mean %+.2g, worst block %.2g\n", r.mean, r.worst);
+    assert_true(fabs(r.mean) < 0.005 && r.worst < 0.02); // all but the same
+    sheen_film_destroy(&a);
+    sheen_film_destroy(&b);
+    stage_free(&strong);
+    stage_free(&weak);
+}
+
+/** A box with a lamp behind a wall with a doorway, seen from the side that is lit through it alone. */
+static Stage doorway(float thickness)
 {
     SheenBuilder *b = kit_begin();
     uint32_t paint = kit_diffuse(b, 0.7f);
     box(b, v3(-2, -1, 0), v3(2, 1, 2), 0, paint);
-    uint32_t m = two_sided(b, paint);
-    rectangle(b, v3(0, -1, 0), v3(0, 2, 0), v3(0, 0, 2), v3(-1, 0, 1), m);
-    if (thickness > 0) rectangle(b, v3(thickness, -1, 0), v3(0, 2, 0), v3(0, 0, 2), v3(1, 0, 1), m);
-    lamp(b, v3(1, 0, 1.6f), 0.4f, 100.0f);
-    lamp(b, v3(-1, 0, 1.6f), 0.4f, 1e-3f);
-    kit_camera(b, v3(seen_lit ? 1.9f : -1.9f, 0, 1.0f), v3(0, 0, 0.4f), v3(0, 0, 1), 1.0f);
+    uint32_t wall = two_sided(b, paint);
+    rectangle(b, v3(0, -1, 0), v3(0, 1.2f, 0), v3(0, 0, 2), v3(-1, 0, 1), wall);
+    if (thickness > 0) {
+        rectangle(b, v3(thickness, -1, 0), v3(0, 1.2f, 0), v3(0, 0, 2), v3(1, 0, 1), wall);
+        rectangle(b, v3(0, 0.2f, 0), v3(thickness, 0, 0), v3(0, 0, 2), v3(0, 1, 1), wall);
+    }
+    lamp(b, v3(1.4f, -0.5f, 1.6f), 0.4f, 50.0f);
+    kit_camera(b, v3(-1.9f, 0.1f, 1.2f), v3(0, -0.4f, 0.5f), v3(0, 0, 1), 1.2f);
     return stage_end(b, 2);
 }
 
 static void test_thin_walls(void **state)
 {
     (void)state;
-    const float thickness[] = {0.0f, 1e-5f, 1e-3f, 1e-2f};
+    const float thickness[] = {0.0f, 1e-2f};
     SheenRenderSettings settings = robust_settings(64, 64);
-    for (int i = 0; i < 4; ++i) {
-        Stage stage = thin_wall(thickness[i], false);
-        char name[64];
-        snprintf(name, sizeof name, "thin-%g", (double)thickness[i]);
-        robust_measure(&stage, &settings, 64, name);
+    for (int i = 0; i < 2; ++i) {
+        Stage stage = doorway(thickness[i]);
+        Robustness r = robust_measure(&stage, &settings, 96, i ? "thin-wall" : "sheet");
+        // 1.4 and 3.1 % against 1024 paths; a block of 96 has noise of 3.7 %.
+        assert_true(fabs(r.mean) < 0.03 && r.rms < 0.06);
         stage_free(&stage);
     }
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_gap), cmocka_unit_test(test_thin_walls)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_gap), cmocka_unit_test(test_hidden_lamp),
+                                       cmocka_unit_test(test_thin_walls)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
