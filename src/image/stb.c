@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// TGA, BMP and binary PGM and PPM through stb_image.
+// TGA and BMP through stb_image.
 #include "image/format.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #define STBI_ONLY_BMP
-#define STBI_ONLY_PNM
 #define STBI_ONLY_TGA
 #define STBI_NO_STDIO
 #define STBI_NO_FAILURE_STRINGS                          // they would be kept in a global
@@ -111,13 +110,6 @@ static bool tga_recognize(const uint8_t *data, size_t size)
     return known && (data[2] & ~15u) == 0 && (data[12] | data[13]) != 0 && (data[14] | data[15]) != 0;
 }
 
-static bool pnm_recognize(const uint8_t *data, size_t size)
-{
-    return size >= 3 && data[0] == 'P' && (data[1] == '5' || data[1] == '6') && strchr(" \t\r\n", data[2]) && data[2];
-}
-
-const ImageFormat sheen_format_pnm = {
-    .endings = {".ppm", ".pgm"}, .recognize = pnm_recognize, .decode_bytes = stb_decode_bytes};
 const ImageFormat sheen_format_bmp = {
     .endings = {".bmp"}, .recognize = bmp_recognize, .decode_bytes = stb_decode_bytes};
 const ImageFormat sheen_format_tga = {

@@ -225,6 +225,37 @@ static void expect_failure(const void *data, size_t size, SheenStatus want, cons
     assert_true(image.pixels == NULL && image.width == 0);
 }
 
+/** Portable pixmaps: any white, two bytes above 255, comments; a header that claims the sky is refused. */
+static void test_pixmaps(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *data;
+        size_t size;
+        float green; // of the last pixel, encoded
+    } cases[] = {{"P5 1 1 255\n\x80", 12, 128},
+                 {"P6\n# 9999999999\n1 1 15\n\x3\x5\x1", 26, 85},
+                 {"P5\t2 1 65535 \0\0\x40\x1", 17, 64},
+                 {"P6 1 1 256 \0\1\1\0\0\1", 17, 255},
+                 {"P5 1 1 15\n\x20", 11, 255}};
+    for (int i = 0; i < 5; ++i) {
+        SheenImage image;
+        assert_int_equal(sheen_image_decode(cases[i].data, cases[i].size, "pixmap", NULL, &image), SHEEN_OK);
+        float green = 255.0f * sheen_srgb_encode(image.pixels[image.width - 1].g);
+        assert_true(fabsf(green - cases[i].green) < 0.01f);
+        sheen_image_free(&image);
+    }
+    static const char *const broken[] = {"P5 42949672970 1 255 abcdefghij",
+                                         "P5 1 1 65536 abc",
+                                         "P5 1 1 0 abc",
+                                         "P6 1 x 255 abc",
+                                         "P6 1 1 255",
+                                         "P5 -1 1 255 abc"};
+    for (int i = 0; i < 6; ++i) expect_failure(broken[i], strlen(broken[i]), SHEEN_ERR_PARSE, "header");
+    expect_failure("P5\t2 4   1615\t", 14, SHEEN_ERR_PARSE, "ends before");
+    expect_failure("P6 2 1 255\nabc", 14, SHEEN_ERR_PARSE, "ends before");
+}
+
 static size_t load(const char *path, uint8_t buffer[static 8192])
 {
     FILE *file = fopen(path, "rb");
@@ -335,9 +366,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_linear_pictures),  cmocka_unit_test(test_byte_pictures),
         cmocka_unit_test(test_compressed_steps), cmocka_unit_test(test_read_bytes),
-        cmocka_unit_test(test_read_alpha),       cmocka_unit_test(test_refused_kinds),
-        cmocka_unit_test(test_claimed_sizes),    cmocka_unit_test(test_cut_files),
-        cmocka_unit_test(test_missing_files),
+        cmocka_unit_test(test_read_alpha),       cmocka_unit_test(test_pixmaps),
+        cmocka_unit_test(test_refused_kinds),    cmocka_unit_test(test_claimed_sizes),
+        cmocka_unit_test(test_cut_files),        cmocka_unit_test(test_missing_files),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
