@@ -54,6 +54,7 @@ static inline Record kit_record(uint32_t i)
     return (Record){.p = kit_point(i),
                     .n = kit_normal(i),
                     .R = R,
+                    .a = KIT_ACCURACY * (1.0f - 0.2f * kit_unit(i, 8)),
                     .R_min = R * kit_unit(i, 6),
                     .R_sure = i % 5 ? R : INFINITY, // of a record that sees nothing but sky
                     .error = kit_unit(i, 7)};

@@ -59,6 +59,23 @@ static SheenStatus create_session(FrameMaker *m)
     return sheen_session_create(&desc, &m->stats->render, &m->stats->build, &m->session);
 }
 
+// Fills all frames until a pass adds nothing: later frames' records and refinement uncover points of earlier ones.
+static SheenStatus fill_all(FrameMaker *m)
+{
+    enum { PASSES_MAX = 8 };
+    const AnimateValues *v = m->values;
+    SheenStatus status = SHEEN_OK;
+    uint64_t before, after = UINT64_MAX;
+    for (int pass = 0; pass < PASSES_MAX && status == SHEEN_OK; ++pass) {
+        before = after;
+        status = run_pass(m, sheen_session_fill, "filling frame", v->records_first, v->records_last);
+        RecordCounts counts = count_kept(m);
+        after = record_counts_all(&counts);
+        if (after == before) break;
+    }
+    return status == SHEEN_OK ? sheen_session_settle(m->session, &m->stats->render) : status;
+}
+
 /** Looks at and fills what is to be filled before the first frame. @return the library's status */
 static SheenStatus fill_before(FrameMaker *m, long begin)
 {
@@ -67,8 +84,7 @@ static SheenStatus fill_before(FrameMaker *m, long begin)
     SheenStatus status = run_pass(m, sheen_session_look, looking, v->records_first, v->records_last);
     if (status != SHEEN_OK) return status;
     if (v->prefill == SWITCH_OFF) return run_pass(m, fill_and_settle, filling, v->first, begin - 1);
-    status = run_pass(m, sheen_session_fill, filling, v->records_first, v->records_last);
-    return status == SHEEN_OK ? sheen_session_settle(m->session, &m->stats->render) : status;
+    return fill_all(m);
 }
 
 int frame_maker_begin(FrameMaker *m, long begin)

@@ -200,6 +200,28 @@ const Option render_options[] = {
      .of_records = true,
      FIELD(secondary)},
     {.kind = OPTION_CHOICE,
+     .name = "adaptive",
+     .argument = "on|off",
+     .meaning = "Make records more accurate, and more of them, until no overlap of their areas shows a difference. "
+                "--accuracy then is where they settle in the mean: between a quarter of it and twice as much.",
+     .standard = "on",
+     .example = "--adaptive off",
+     .choices = cli_on_off,
+     .recorded = true,
+     .of_records = true,
+     FIELD(adaptive)},
+    {.kind = OPTION_NUMBER,
+     .name = "discernible",
+     .argument = "F",
+     .meaning = "With --adaptive: the least difference that is told, relative to what a point shows with its direct "
+                "light.",
+     .standard = "0.02",
+     .example = "--discernible 0.01",
+     .recorded = true,
+     .of_records = true,
+     RANGE(0.0, 1.0),
+     FIELD(discernible)},
+    {.kind = OPTION_CHOICE,
      .name = "neighbor-clamping",
      .argument = "on|off",
      .meaning = "Keep the radius of a record below that of its neighbors plus their distance, so that small detail is "
@@ -286,8 +308,6 @@ const Option render_options[] = {
      .example = "--verbose",
      FIELD(verbose)},
     {.kind = OPTION_LATER, .name = "error-metric"},
-    {.kind = OPTION_LATER, .name = "adaptive"},
-    {.kind = OPTION_LATER, .name = "discernible"},
     {0},
 };
 
@@ -307,6 +327,8 @@ RenderValues render_values_default(void)
         .secondary = (int)o.secondary,
         .neighbor_clamping = o.neighbor_clamping,
         .gradient_clamping = o.gradient_clamping,
+        .adaptive = o.adaptive,
+        .discernible = cli_decimal(o.discernible),
         .seed = o.seed,
         .progress = PROGRESS_AUTO,
     };
@@ -344,6 +366,8 @@ SheenRenderSettings render_values_settings(RenderValues *values, const SheenCame
     o.secondary = (SheenSecondary)values->secondary;
     o.neighbor_clamping = values->neighbor_clamping != 0;
     o.gradient_clamping = values->gradient_clamping != 0;
+    o.adaptive = values->adaptive != 0;
+    o.discernible = (float)values->discernible;
     o.seed = values->seed;
     return (SheenRenderSettings){
         .integrator = (SheenIntegrator)values->integrator,

@@ -26,7 +26,8 @@ typedef struct RenderValues {
     double accuracy;
     uint32_t gather_rays;
     int gradients, basis, secondary; // SheenGradient, SheenBasisChoice, SheenSecondary
-    int neighbor_clamping, gradient_clamping;
+    int neighbor_clamping, gradient_clamping, adaptive;
+    double discernible;
     unsigned aovs; // bit 1 << SheenAov
     double exposure;
     uint32_t threads, seed;

@@ -123,7 +123,8 @@ static SheenStatus read_record(const Decoder *d, SheenCachePartKind kind, const 
                   .R = head[6],
                   .R_min = head[7],
                   .R_sure = head[8],
-                  .error = head[9]};
+                  .error = head[9],
+                  .a = head[10]};
     if (!cache_record_is_sound(r) || !cache_light_is_sound(light, part->light_floats))
         return refuse(d, "%s record %u has numbers that no record can have", part_names[kind], part->n);
     ++part->n;

@@ -145,3 +145,14 @@ SheenStatus sheen_octree_insert(SheenOctree *t, Vec3 center, float radius, uint3
     Sphere sphere = {center, radius, record};
     return insert(t, 0, t->lo, t->side, &sphere);
 }
+
+bool sheen_octree_holds(const SheenOctree *t, Vec3 p)
+{
+    for (OctreeWalk walk = octree_walk(t); walk.node != SHEEN_OCTREE_END; octree_descend(t, &walk, p))
+        for (uint32_t b = t->nodes[walk.node].blocks; b; b = t->blocks[b].next) {
+            float d2[SHEEN_OCTREE_LANES];
+            octree_block_distances2(&t->blocks[b], p, d2);
+            if (octree_block_holding(&t->blocks[b], d2)) return true;
+        }
+    return false;
+}

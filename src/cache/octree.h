@@ -48,6 +48,9 @@ SHEEN_NODISCARD SheenStatus sheen_octree_create_alike(const SheenOctree *tree, S
  */
 SHEEN_NODISCARD SheenStatus sheen_octree_insert(SheenOctree *tree, Vec3 center, float radius, uint32_t record);
 
+/** Whether a sphere holds a point. */
+bool sheen_octree_holds(const SheenOctree *tree, Vec3 p);
+
 /** Bytes in use. */
 uint64_t sheen_octree_bytes(const SheenOctree *tree);
 

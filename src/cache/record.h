@@ -14,6 +14,7 @@ typedef struct Record {
     Vec3 p;       // position, world space, metres
     Vec3 n;       // unit normal of the side that is lit
     float R;      // clamped harmonic mean distance, metres: the record reaches a R on a plane
+    float a;      // its accuracy: the record is used where w > 1/a
     float R_min;  // the least R that later clamping may set
     float R_sure; // its own radius. Below R_min, R is R_min: farther out it speaks where no other record does
     float error;  // relative standard error of its light
@@ -50,10 +51,10 @@ static inline float record_weight(float R, float d2, float cos_n)
  * @param slack  metres, added to the tolerance
  * Source: ward1988, test on d_i(P), there without tolerance.
  */
-static inline bool record_in_front(const Record *r, Vec3 p, Vec3 n, float a, float slack)
+static inline bool record_in_front(const Record *r, Vec3 p, Vec3 n, float slack)
 {
     float d = v3_dot(v3_sub(p, r->p), v3_add(n, r->n)) * 0.5f;
-    return d < -0.02f * a * r->R - slack;
+    return d < -0.02f * r->a * r->R - slack;
 }
 
 #endif

@@ -142,8 +142,11 @@ static void smooth_radiance(void *user, size_t item, unsigned worker)
 static SheenStatus widen(const SheenRecordStore *store, const Bounds *bounds, SheenRecordStore **wide)
 {
     SheenStatus status = sheen_store_create(2.0f * store->accuracy, false, bounds, wide);
-    for (uint32_t i = 0; i < store->n && status == SHEEN_OK; ++i)
-        status = sheen_store_insert(*wide, &store->records[i]);
+    for (uint32_t i = 0; i < store->n && status == SHEEN_OK; ++i) {
+        Record r = store->records[i];
+        r.a = 2.0f * store->accuracy;
+        status = sheen_store_append(*wide, &r);
+    }
     return status;
 }
 

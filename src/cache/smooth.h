@@ -8,9 +8,10 @@
 #include "cache/radiance_cache.h"
 
 /**
- * Replaces the irradiance and the gradients of each record by means over what it and its neighbors, as far as twice its
- * reach, say there: each weighed by the inverse of its variance, which is that of its gather and, for a neighbor, the
- * square of the interpolation error to be expected. A record without noise stays as it is.
+ * Replaces the irradiance and the gradients of each record by means over what it and its neighbors, as far as twice the
+ * reach that they would have at the accuracy of the cache, say there: each weighed by the inverse of its variance,
+ * which is that of its gather and, for a neighbor, the square of the interpolation error to be expected. A record
+ * without noise stays as it is.
  * @param first   records before it stay as they are, and are learnt from
  * @param cancel  may be NULL
  * Errors: SHEEN_ERR_NOMEM, SHEEN_ERR_CANCELLED; the cache is unchanged then. The result does not depend on the pool.

@@ -11,7 +11,7 @@ SheenStatus sheen_store_create(float accuracy, bool neighbor_clamping, const Bou
     *out = NULL;
     SheenRecordStore *s = calloc(1, sizeof *s);
     if (!s) return SHEEN_ERR_NOMEM;
-    s->accuracy = accuracy;
+    s->accuracy = s->a_least = accuracy;
     s->neighbor_clamping = neighbor_clamping;
     s->cos_min = -1.0f;
     if (sheen_octree_create(bounds, &s->octree) != SHEEN_OK) {
@@ -57,7 +57,7 @@ static void clamp_record(Clamp *c, uint32_t record)
 static void clamp_visit(Clamp *c, uint32_t node, Vec3 lo, float side)
 {
     const SheenOctree *t = c->store->octree;
-    float R = node == 0 ? INFINITY : c->shrinks ? 0.51f * side / c->store->accuracy : c->R;
+    float R = node == 0 ? INFINITY : c->shrinks ? 0.51f * side / c->store->a_least : c->R;
     if (c->p.x + R < lo.x || c->p.x - R > lo.x + side || c->p.y + R < lo.y || c->p.y - R > lo.y + side ||
         c->p.z + R < lo.z || c->p.z - R > lo.z + side)
         return;
@@ -87,9 +87,9 @@ static void shrink_neighbors(SheenRecordStore *store, const Record *r)
     clamp_visit(&c, 0, store->octree->lo, store->octree->side);
 }
 
-static SheenStatus index_record(const SheenRecordStore *s, SheenOctree *tree, const Record *r, uint32_t number)
+static SheenStatus index_record(SheenOctree *tree, const Record *r, uint32_t number)
 {
-    return sheen_octree_insert(tree, r->p, s->accuracy * r->R, number);
+    return sheen_octree_insert(tree, r->p, r->a * r->R, number);
 }
 
 SheenStatus sheen_store_append(SheenRecordStore *s, const Record *record)
@@ -102,9 +102,10 @@ SheenStatus sheen_store_append(SheenRecordStore *s, const Record *record)
         s->records = grown;
         s->capacity = capacity;
     }
-    SheenStatus status = index_record(s, s->octree, record, s->n);
+    SheenStatus status = index_record(s->octree, record, s->n);
     if (status != SHEEN_OK) return status;
     s->records[s->n++] = *record;
+    s->a_least = minf(s->a_least, record->a);
     return SHEEN_OK;
 }
 
@@ -120,30 +121,31 @@ SheenStatus sheen_store_reindex(SheenRecordStore *s)
 {
     SheenOctree *tree = NULL;
     SheenStatus status = sheen_octree_create_alike(s->octree, &tree);
-    for (uint32_t i = 0; i < s->n && status == SHEEN_OK; ++i) status = index_record(s, tree, &s->records[i], i);
+    for (uint32_t i = 0; i < s->n && status == SHEEN_OK; ++i) status = index_record(tree, &s->records[i], i);
     if (status != SHEEN_OK) {
         sheen_octree_destroy(&tree);
         return status;
     }
     sheen_octree_destroy(&s->octree);
     s->octree = tree;
+    for (uint32_t i = 0; i < s->n; ++i) s->a_least = minf(s->a_least, s->records[i].a);
     return SHEEN_OK;
 }
 
 // The weight w - 1/a of a record, continuous where its influence ends. A record whose radius had to be enlarged to what
 // the picture resolves keeps its full weight within its own radius; in the ring beyond it a thousandth: that decides
 // only where no other record reaches. A contact's darkness would otherwise paint discs onto the open floor beside it.
-// @param R_most the largest radius of an enlarged record
+// @param most   metres that an enlarged record reaches at most
 // @param cover  out: 2 for a record that reaches the point by itself, 1 where it was enlarged
-static float influence(const SheenRecordStore *s, const Record *r, float R_most, float d2, float cos_n, unsigned *cover)
+static float influence(const Record *r, float most, float d2, float cos_n, unsigned *cover)
 {
     const float ring = 1e-3f;
-    float least = 1.0f / s->accuracy;
+    float least = 1.0f / r->a;
     if (!record_is_enlarged(r)) {
         *cover = 2;
         return record_weight(r->R, d2, cos_n) - least;
     }
-    float w = record_weight(maxf(r->R_sure, minf(r->R, R_most)), d2, cos_n) - least;
+    float w = record_weight(maxf(r->R_sure, minf(r->R, most / r->a)), d2, cos_n) - least;
     float own = record_weight(r->R_sure, d2, cos_n) - least;
     *cover = own > 0.0f ? 2 : 1;
     return ring * minf(w, least) + maxf(own, 0.0f);
@@ -171,7 +173,7 @@ static void add_contributor(uint32_t record, float w, Contributors *out)
 /** What is asked of the store. */
 typedef struct Query {
     Vec3 p, n;
-    float slack, R_most;
+    float slack, most;
 } Query;
 
 // Takes a record when it serves the point. @param d2  squared distance, below the square of the record's reach
@@ -179,8 +181,8 @@ static void consider(const SheenRecordStore *s, uint32_t record, float d2, const
 {
     const Record *r = &s->records[record];
     unsigned cover;
-    float cos_n = v3_dot(q->n, r->n), w = influence(s, r, q->R_most, d2, cos_n, &cover);
-    if (!(w > 0.0f) || cos_n < s->cos_min || record_in_front(r, q->p, q->n, s->accuracy, q->slack)) return;
+    float cos_n = v3_dot(q->n, r->n), w = influence(r, q->most, d2, cos_n, &cover);
+    if (!(w > 0.0f) || cos_n < s->cos_min || record_in_front(r, q->p, q->n, q->slack)) return;
     add_contributor(record, minf(w, weight_max), out);
     out->cover += cover;
 }
@@ -212,23 +214,38 @@ void sheen_store_find(const SheenRecordStore *s, Vec3 p, Vec3 n, float slack, Co
     find(s, &(Query){p, n, slack, INFINITY}, out);
 }
 
-void sheen_store_find_near(const SheenRecordStore *s, Vec3 p, Vec3 n, float R_most, Contributors *out)
+void sheen_store_find_near(const SheenRecordStore *s, Vec3 p, Vec3 n, float most, Contributors *out)
 {
-    find(s, &(Query){p, n, 0.0f, R_most}, out);
+    find(s, &(Query){p, n, 0.0f, most}, out);
 }
 
-float sheen_store_expect_radius(const SheenRecordStore *s, Vec3 p)
+RecordExpected sheen_store_expect(const SheenRecordStore *s, Vec3 p)
 {
-    float least = INFINITY;
+    RecordExpected e = {INFINITY, 0.0f};
+    float nearest2 = INFINITY;
     const SheenOctree *t = s->octree;
     for (OctreeWalk walk = octree_walk(t); walk.node != SHEEN_OCTREE_END; octree_descend(t, &walk, p))
-        for (uint32_t b = t->nodes[walk.node].blocks; b; b = t->blocks[b].next) {
+        for (uint32_t i = t->nodes[walk.node].blocks; i; i = t->blocks[i].next) {
+            const OctreeBlock *b = &t->blocks[i];
             float d2[SHEEN_OCTREE_LANES];
-            octree_block_distances2(&t->blocks[b], p, d2);
-            for (int i = 0; i < SHEEN_OCTREE_LANES; ++i)
-                least = minf(sqrtf(t->blocks[b].reach2[i]) / s->accuracy + sqrtf(d2[i]), least);
+            octree_block_distances2(b, p, d2);
+            for (uint32_t k = 0; k < b->n; ++k) {
+                float a = s->records[b->record[k]].a;
+                e.reach = minf(sqrtf(b->reach2[k]) + a * sqrtf(d2[k]), e.reach);
+                if (d2[k] < nearest2) nearest2 = d2[k], e.a = a;
+            }
         }
-    return least;
+    return e;
+}
+
+void sheen_store_refine(SheenRecordStore *s, const float a[])
+{
+    for (uint32_t i = 0; i < s->n; ++i) {
+        Record *r = &s->records[i];
+        if (!(a[i] < r->a)) continue;
+        r->R_min *= r->a / a[i];
+        r->a = a[i];
+    }
 }
 
 uint64_t sheen_store_bytes(const SheenRecordStore *s)

@@ -9,7 +9,8 @@
 
 /** Records in the order of insertion. Readers may run in parallel while nobody inserts. */
 typedef struct SheenRecordStore {
-    float accuracy;         // a: a record is used where w > 1/a
+    float accuracy;         // the largest a of a record
+    float a_least;          // the least a that a record in the octree had when it was put there
     bool neighbor_clamping; // krivanek2006-making-caching-practical sec. 5.2
     float cos_min;          // least cosine between the normals of a record and of a point that it serves; -1 at first
     SheenOctree *octree;
@@ -18,7 +19,7 @@ typedef struct SheenRecordStore {
 } SheenRecordStore;
 
 /**
- * @param accuracy  a in (0, 1]; small is accurate and slow
+ * @param accuracy  the largest a that a record will have, in (0, 1]
  * @param bounds    where records and shading points will be
  */
 SHEEN_NODISCARD SheenStatus sheen_store_create(float accuracy, bool neighbor_clamping, const Bounds *bounds,
@@ -69,17 +70,31 @@ void sheen_store_find(const SheenRecordStore *store, Vec3 p, Vec3 n, float slack
 
 /**
  * The same for a picture that resolves more than the one that the records were made for: those whose radius was
- * enlarged to what a picture resolves count with at most R_most, or with their own radius where that is more.
+ * enlarged to what a picture resolves reach at most so far, or as far as their own radius where that is more.
  * Thread-safe.
+ * @param most  metres
  */
-void sheen_store_find_near(const SheenRecordStore *store, Vec3 p, Vec3 n, float R_most, Contributors *out);
+void sheen_store_find_near(const SheenRecordStore *store, Vec3 p, Vec3 n, float most, Contributors *out);
+
+/** What a record may be expected to be like. */
+typedef struct RecordExpected {
+    float reach; // a R, metres; INFINITY where no record is near
+    float a;     // of the nearest record; 0 where there is none
+} RecordExpected;
 
 /**
- * The radius R that a record at p may be expected to have: the least R_j + distance over the records that lie near it
- * in the octree, with their radii as inserted. INFINITY where there is none. Thread-safe. Source:
- * krivanek2006-making-caching-practical sec. 5.2, its inequality used as a guess.
+ * What a record at p may be expected to be like, by those that lie near it in the octree: it reaches the least of their
+ * reaches plus a times the distance. Thread-safe. Source: krivanek2006-making-caching-practical sec. 5.2, its
+ * inequality used as a guess.
  */
-float sheen_store_expect_radius(const SheenRecordStore *store, Vec3 p);
+RecordExpected sheen_store_expect(const SheenRecordStore *store, Vec3 p);
+
+/**
+ * Makes records more accurate. The least radius that clamping may set grows as a shrinks: the least reach stays.
+ * @param a  [n] of each record of the store; those that are not less than it has change nothing
+ * The octree stays as it is; sheen_store_reindex makes it smaller.
+ */
+void sheen_store_refine(SheenRecordStore *store, const float a[]);
 
 uint64_t sheen_store_bytes(const SheenRecordStore *store);
 

@@ -2,6 +2,7 @@
 #include "integrator/cached.h"
 
 #include "base/clock.h"
+#include "integrator/converge.h"
 #include "integrator/deep.h"
 #include "integrator/first_points.h"
 #include "integrator/glossy_cache.h"
@@ -135,7 +136,8 @@ static SheenStatus make_ready(SheenCached *c, const ShadingPoint *at, SheenStats
 typedef struct Target {
     const SheenCaches *caches;
     const SheenCaches *around; // whose records bound the new ones'; NULL for none
-    unsigned rounds;           // fills at most: later records' clamping uncovers some points again
+    unsigned rounds;           // fills at most: later records' clamping and refinement uncover some points again
+    bool adaptive;             // whether records are refined
 } Target;
 
 // The kinds of records: irradiance, then radiance in each basis.
@@ -155,34 +157,31 @@ static RecordKind record_kind(const SheenCached *c, const Target *to, int kind)
     return k;
 }
 
-// Makes records of one kind until its points are covered. Look-ups depend on the order and the radii of the octree's
-// spheres: it is built anew, so that they are the same after the records were written and read.
+// Makes records of one kind until its points are covered. Where they are at first, nothing is done.
 static SheenStatus cover(SheenCached *c, const SheenWork *work, const Target *to, int kind, const ShadingPoint points[],
-                         size_t n, SheenStats *stats)
+                         size_t n, SheenAdaptView *view, SheenStats *stats)
 {
-    SheenStatus status = SHEEN_OK;
-    for (unsigned round = 0; round < to->rounds && n > 0 && status == SHEEN_OK; ++round) {
-        bool open = false;
-        status = sheen_fill_is_open(work, store_of(to->caches, kind), points, n, &open);
-        if (status != SHEEN_OK || !open) return status;
-        status = make_ready(c, &points[0], stats);
-        if (status != SHEEN_OK) return status;
-        RecordKind k = record_kind(c, to, kind);
-        status = sheen_fill_run(work, &k, points, n, stats);
-        if (status == SHEEN_OK) status = sheen_store_reindex(store_of(to->caches, kind));
-    }
-    return status;
+    bool open = false;
+    SheenStatus status = sheen_fill_is_open(work, store_of(to->caches, kind), points, n, &open);
+    if (status != SHEEN_OK || !open) return status;
+    status = make_ready(c, &points[0], stats);
+    if (status != SHEEN_OK) return status;
+    RecordKind k = record_kind(c, to, kind);
+    AdaptCache cache = {.irradiance = kind == KIND_IRRADIANCE ? to->caches->irradiance : NULL,
+                        .radiance = kind == KIND_IRRADIANCE ? NULL : to->caches->radiance[kind - KIND_RADIANCE]};
+    const Convergence convergence = {work, &k, cache, to->rounds, to->adaptive ? view : NULL};
+    return sheen_converge(&convergence, points, n, stats);
 }
 
 static SheenStatus cover_glossy(SheenCached *c, const SheenWork *work, const Target *to, SheenBasis basis,
-                                const SeenPoints *seen, SheenStats *stats)
+                                const SeenPoints *seen, SheenAdaptView *view, SheenStats *stats)
 {
     ShadingPoint *points = malloc((seen->n_glossy + 1) * sizeof *points);
     if (!points) return SHEEN_ERR_NOMEM;
     size_t n = 0;
     for (size_t i = 0; i < seen->n_glossy; ++i)
         if (seen->glossy[i].basis == basis) points[n++] = seen->glossy[i].at;
-    SheenStatus status = cover(c, work, to, KIND_RADIANCE + (int)basis, points, n, stats);
+    SheenStatus status = cover(c, work, to, KIND_RADIANCE + (int)basis, points, n, view, stats);
     free(points);
     return status;
 }
@@ -192,16 +191,18 @@ static SheenStatus fill(SheenCached *c, const SheenWork *work, const Target *to,
                         SheenStats *stats)
 {
     double start = sheen_clock_seconds();
-    SheenStatus status = cover(c, work, to, KIND_IRRADIANCE, seen->points, seen->n_points, stats);
+    SheenAdaptView view = {0};
+    SheenStatus status = cover(c, work, to, KIND_IRRADIANCE, seen->points, seen->n_points, &view, stats);
     for (int b = 0; b < SHEEN_BASIS_COUNT && status == SHEEN_OK && seen->n_glossy > 0; ++b)
-        status = cover_glossy(c, work, to, (SheenBasis)b, seen, stats);
+        status = cover_glossy(c, work, to, (SheenBasis)b, seen, &view, stats);
+    sheen_adapt_free(&view);
     stats->time_fill += sheen_clock_seconds() - start;
     return status;
 }
 
 SheenStatus sheen_cached_fill(SheenCached *c, const SheenView *view, SheenStats *stats)
 {
-    enum { ROUNDS_MAX = 16 };
+    enum { ROUNDS_MAX = 32 };
     if (!c->indirect) return SHEEN_OK;
     SheenWork work = sheen_work_for(&c->work, view);
     SeenPoints seen = {0};
@@ -209,7 +210,7 @@ SheenStatus sheen_cached_fill(SheenCached *c, const SheenView *view, SheenStats 
     progress_report(work.progress, "visibility", 0.0, 0);
     SheenStatus status = sheen_first_points(&work, NULL, stats, &seen);
     stats->time_visibility += sheen_clock_seconds() - start;
-    const Target kept = {&c->caches, NULL, ROUNDS_MAX};
+    const Target kept = {&c->caches, NULL, ROUNDS_MAX, work.options.adaptive};
     if (status == SHEEN_OK) status = fill(c, &work, &kept, &seen, stats);
     sheen_seen_free(&seen);
     return status;
@@ -233,9 +234,9 @@ static SheenStatus shade(SheenCached *c, const SheenWork *work, SheenCaches *own
     SheenStatus status = sheen_shade(work, c->indirect ? &caches : NULL, first, picture, &uncovered, stats);
     if (status == SHEEN_OK && uncovered.n_points + uncovered.n_glossy > 0) {
         if (!own->irradiance) status = sheen_caches_create(work, own);
-        const Target to = {own, &c->caches, 1};
+        const Target to = {own, &c->caches, 1, false};
         if (status == SHEEN_OK) status = fill(c, work, &to, &uncovered, stats);
-        if (status == SHEEN_OK) sheen_shade_uncovered(work, &caches, &uncovered, picture, stats);
+        if (status == SHEEN_OK) sheen_shade_uncovered(&caches, &uncovered, picture, stats);
     }
     sheen_seen_free(&uncovered);
     return status;

@@ -103,7 +103,7 @@ static bool store_point(SheenDeep *d, const DiffusePoint *p, float R)
     }
     d->points[i] = *p;
     float clamped = reach_of(d, R) / deep_accuracy;
-    Record record = {.p = p->p, .n = p->n, .R = clamped, .R_min = clamped, .R_sure = clamped};
+    Record record = {.p = p->p, .n = p->n, .R = clamped, .a = deep_accuracy, .R_min = clamped, .R_sure = clamped};
     return sheen_store_insert(d->store, &record) == SHEEN_OK;
 }
 

@@ -20,6 +20,7 @@ typedef struct Waves {
     unsigned char *covered; // [n_open]
     unsigned char *made_at; // [points] a record was made there: covered, whatever its numbers are
     float *spacing;         // [n_open] distance within which one record of the wave is enough
+    float *a;               // [points] accuracy that a record there begins with
     uint32_t *accepted;     // the wave's new records
     size_t n_accepted;
     Record *records;      // [n_accepted]
@@ -29,17 +30,16 @@ typedef struct Waves {
 
 /** Asks whether all points are covered. */
 typedef struct Question {
-    const SheenOptions *options;
     const SheenRecordStore *store;
     const ShadingPoint *points; // [n]
     size_t n;
     atomic_bool open;
 } Question;
 
-static bool is_covered(const SheenOptions *o, const SheenRecordStore *store, const ShadingPoint *p)
+static bool is_covered(const SheenRecordStore *store, const ShadingPoint *p)
 {
     Contributors c;
-    sheen_store_find_near(store, p->point.p, p->point.n, record_most_enlarged(o, p->footprint), &c);
+    sheen_store_find_near(store, p->point.p, p->point.n, record_most_enlarged(p->footprint), &c);
     return c.cover > 1;
 }
 
@@ -49,13 +49,13 @@ static void question_task(void *user, size_t item, unsigned worker)
     Question *q = user;
     size_t end = (item + 1) * COVER_BLOCK < q->n ? (item + 1) * COVER_BLOCK : q->n;
     for (size_t i = item * COVER_BLOCK; i < end && !atomic_load_explicit(&q->open, memory_order_relaxed); ++i)
-        if (!is_covered(q->options, q->store, &q->points[i])) atomic_store(&q->open, true);
+        if (!is_covered(q->store, &q->points[i])) atomic_store(&q->open, true);
 }
 
 SheenStatus sheen_fill_is_open(const SheenWork *work, const SheenRecordStore *store, const ShadingPoint points[],
                                size_t n, bool *open)
 {
-    Question q = {&work->options, store, points, n, false};
+    Question q = {store, points, n, false};
     *open = false;
     if (!sheen_pool_run(work->pool, (n + COVER_BLOCK - 1) / COVER_BLOCK, question_task, &q, work->cancel))
         return SHEEN_ERR_CANCELLED;
@@ -67,15 +67,15 @@ static void cover_task(void *user, size_t item, unsigned worker)
 {
     (void)worker;
     Waves *w = user;
-    float a = w->work->options.accuracy;
     size_t end = (item + 1) * COVER_BLOCK < w->n_open ? (item + 1) * COVER_BLOCK : w->n_open;
     for (size_t i = item * COVER_BLOCK; i < end; ++i) {
         const ShadingPoint *p = &w->points[w->open[i]];
-        w->covered[i] = w->made_at[w->open[i]] || is_covered(&w->work->options, w->kind->store, p);
+        w->covered[i] = w->made_at[w->open[i]] || is_covered(w->kind->store, p);
         if (w->covered[i]) continue;
         float most = SHEEN_REACH_MAX_PX * p->footprint;
-        float radius = sheen_store_expect_radius(w->kind->store, p->point.p);
-        w->spacing[i] = isinf(radius) ? 0.5f * most : clampf(a * radius, SHEEN_REACH_MIN_PX * p->footprint, most);
+        RecordExpected e = sheen_store_expect(w->kind->store, p->point.p);
+        w->spacing[i] = isinf(e.reach) ? 0.5f * most : clampf(e.reach, SHEEN_REACH_MIN_PX * p->footprint, most);
+        w->a[w->open[i]] = record_first_accuracy(&w->work->options, e.a);
     }
 }
 
@@ -83,7 +83,8 @@ static void gather_task(void *user, size_t item, unsigned worker)
 {
     Waves *w = user;
     uint32_t key = hash_combine(w->work->options.seed ^ 0x9a7eu, w->made + (uint32_t)item);
-    w->kind->make(w->kind->maker, &w->points[w->accepted[item]], key, worker, &w->stats[worker], &w->records[item],
+    uint32_t point = w->accepted[item];
+    w->kind->make(w->kind->maker, &w->points[point], w->a[point], key, worker, &w->stats[worker], &w->records[item],
                   w->light + item * w->kind->light_size);
     if (worker == 0) {
         // Most of the points that a wave finds open it covers.
@@ -120,8 +121,8 @@ static SheenStatus choose(Waves *w)
         w->spacing[kept++] = w->spacing[i];
     }
     w->n_open = kept;
-    return sheen_thin(w->work->options.accuracy, SHEEN_REACH_MAX_PX, w->work->width, w->points, w->n_open, w->open,
-                      w->spacing, w->accepted, &w->n_accepted);
+    return sheen_thin(SHEEN_REACH_MAX_PX, w->work->width, w->points, w->n_open, w->open, w->spacing, w->a, w->accepted,
+                      &w->n_accepted);
 }
 
 static SheenStatus insert_wave(Waves *w)
@@ -164,9 +165,10 @@ SheenStatus sheen_fill_run(const SheenWork *work, const RecordKind *kind, const 
     w.covered = malloc(n);
     w.made_at = calloc(n, 1);
     w.spacing = malloc(n * sizeof *w.spacing);
+    w.a = malloc(n * sizeof *w.a);
     w.accepted = malloc(n * sizeof *w.accepted);
     w.records = malloc(n * sizeof *w.records);
-    bool ok = w.stats && w.open && w.covered && w.made_at && w.spacing && w.accepted && w.records;
+    bool ok = w.stats && w.open && w.covered && w.made_at && w.spacing && w.a && w.accepted && w.records;
     SheenStatus status = ok ? SHEEN_OK : SHEEN_ERR_NOMEM;
     if (status == SHEEN_OK) order_points(&w, n, work->width);
     do {
@@ -179,6 +181,7 @@ SheenStatus sheen_fill_run(const SheenWork *work, const RecordKind *kind, const 
     free(w.covered);
     free(w.made_at);
     free(w.spacing);
+    free(w.a);
     free(w.accepted);
     free(w.records);
     free(w.light);

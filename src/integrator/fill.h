@@ -10,9 +10,9 @@
 typedef struct RecordKind {
     size_t light_size; // bytes of a record's light
     const void *maker;
-    /** Makes the record of a point, and its light; a function of the point and the key alone. Thread-safe for workers
-     *  of different numbers. */
-    void (*make)(const void *maker, const ShadingPoint *p, uint32_t key, unsigned worker, SheenStats *stats,
+    /** Makes the record of a point, of accuracy a, and its light; a function of these and the key alone. Thread-safe
+     *  for workers of different numbers. */
+    void (*make)(const void *maker, const ShadingPoint *p, float a, uint32_t key, unsigned worker, SheenStats *stats,
                  Record *record, void *light);
     const SheenRecordStore *store;  // of the cache
     const SheenRecordStore *around; // other records that bound the radii of new ones; may be NULL

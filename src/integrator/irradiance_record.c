@@ -32,21 +32,21 @@ void sheen_irradiance_maker_destroy(SheenIrradianceMaker **maker)
     *maker = NULL;
 }
 
-static void make(const void *maker, const ShadingPoint *p, uint32_t key, unsigned worker, SheenStats *stats,
+static void make(const void *maker, const ShadingPoint *p, float a, uint32_t key, unsigned worker, SheenStats *stats,
                  Record *record, void *out)
 {
     const SheenIrradianceMaker *m = maker;
     const SheenOptions *o = &m->gatherer.work->options;
     IrradianceLight *light = out;
-    float R_min = record_least_radius(o, p->footprint);
+    float R_min = record_least_radius(a, p->footprint);
     DiffusePoint at = p->point;
     at.bent = at.n; // whatever a map makes of the surface there
     const Hemisphere *h = sheen_gather_light(&m->gatherer, &at, R_min, key, worker, stats);
     IrradianceEstimate e;
     sheen_estimate_irradiance(h->strata, h->L, h->distance, &e);
-    *record = (Record){.p = p->point.p, .n = p->point.n, .error = h->error};
+    *record = (Record){.p = p->point.p, .n = p->point.n, .a = a, .error = h->error};
     float R = o->gradient_clamping ? estimate_gradient_radius(&e) : e.R;
-    record_set_radius(o, p->footprint, R, record);
+    record_set_radius(p->footprint, R, record);
     estimate_enlarge(R, record->R_min, &e);
     BehindEstimate behind;
     sheen_estimate_behind(h->strata, h->L, &behind);

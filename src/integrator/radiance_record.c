@@ -86,13 +86,13 @@ static void mirror_below(unsigned order, Rgb c[])
             c[basis_index(l, m)] = rgb_scale(c[basis_index(l, m)], ((int)l + m) % 2 == 0 ? 2.0f : 0.0f);
 }
 
-static void make(const void *maker, const ShadingPoint *p, uint32_t key, unsigned worker, SheenStats *stats,
+static void make(const void *maker, const ShadingPoint *p, float a, uint32_t key, unsigned worker, SheenStats *stats,
                  Record *record, void *out)
 {
     const SheenRadianceMaker *m = maker;
     const SheenOptions *o = &m->gatherer.work->options;
     const SheenRadianceCache *cache = m->like;
-    float R_min = record_least_radius(o, p->footprint);
+    float R_min = record_least_radius(a, p->footprint);
     const Hemisphere *h = sheen_gather_light(&m->gatherer, &p->point, R_min, key, worker, stats);
     float *light = out;
     memset(light, 0, radiance_light_floats(cache) * sizeof *light);
@@ -102,9 +102,9 @@ static void make(const void *maker, const ShadingPoint *p, uint32_t key, unsigne
     RadianceSamples samples = {h->directions, h->L, h->distance, h->normals};
     sheen_estimate_radiance(m->tables, &samples, o->gradients, &e);
     size_t n = basis_size(cache->order);
-    *record = (Record){.p = p->point.p, .n = p->point.n, .error = relative_error(cache->order, &e)};
+    *record = (Record){.p = p->point.p, .n = p->point.n, .a = a, .error = relative_error(cache->order, &e)};
     float R = o->gradient_clamping ? gradient_radius(n, &e) : e.R;
-    record_set_radius(o, p->footprint, R, record);
+    record_set_radius(p->footprint, R, record);
     float scale = estimate_gradient_share(R, record->R_min);
     for (size_t i = 0; i < 2 * cache->stride; ++i) light[cache->stride + i] *= scale;
     if (cache->basis == SHEEN_BASIS_HSH) return;

@@ -11,25 +11,43 @@
 #define SHEEN_REACH_MIN_PX 4.0f
 #define SHEEN_REACH_MAX_PX 25.0f
 
-/** The least R of a record. @param footprint  side of a pixel there, metres */
-static inline float record_least_radius(const SheenOptions *o, float footprint)
+/** The least R of a record of accuracy a. @param footprint  side of a pixel there, metres */
+static inline float record_least_radius(float a, float footprint)
 {
-    return SHEEN_REACH_MIN_PX * footprint / o->accuracy;
+    return SHEEN_REACH_MIN_PX * footprint / a;
 }
 
-/** The largest radius that a record may have been enlarged to, to serve a point: twice what its own picture would
- * enlarge it to. Records made from afar give way to finer ones when the camera comes near. */
-static inline float record_most_enlarged(const SheenOptions *o, float footprint)
+/** How far a record that was enlarged may reach to serve a point, metres: twice as far as the point's own picture would
+ * have enlarged it. Records made from afar give way to finer ones when the camera comes near. */
+static inline float record_most_enlarged(float footprint)
 {
-    return 2.0f * record_least_radius(o, footprint);
+    return 2.0f * SHEEN_REACH_MIN_PX * footprint;
 }
 
-/** Sets the radii of a record whose own is R. */
-static inline void record_set_radius(const SheenOptions *o, float footprint, float R, Record *r)
+/** Sets the radii of a record of its accuracy whose own is R. */
+static inline void record_set_radius(float footprint, float R, Record *r)
 {
-    r->R_min = record_least_radius(o, footprint);
-    r->R = clampf(R, r->R_min, SHEEN_REACH_MAX_PX * footprint / o->accuracy);
+    r->R_min = record_least_radius(r->a, footprint);
+    r->R = clampf(R, r->R_min, SHEEN_REACH_MAX_PX * footprint / r->a);
     r->R_sure = maxf(R, SHEEN_SLIVER * r->R_min);
+}
+
+// Adaptive caching: records begin with --accuracy, or with what their neighbors came to, and become more accurate where
+// they disagree with others. To begin with more, as the paper does, was worse: coarse records that differ from fine
+// ones by less than noise explains leave borders between the two.
+#define SHEEN_ACCURACY_LEAST 0.25f // times --accuracy
+#define SHEEN_ACCURACY_GROWS 1.4f  // times that of the nearest record; krivanek2006-making-caching-practical sec. 4.2
+
+/** The accuracy that a record begins with. @param nearest  that of the nearest record, 0 where there is none */
+static inline float record_first_accuracy(const SheenOptions *o, float nearest)
+{
+    return o->adaptive && nearest > 0.0f ? minf(SHEEN_ACCURACY_GROWS * nearest, o->accuracy) : o->accuracy;
+}
+
+/** The least a that refinement may set. */
+static inline float record_least_accuracy(const SheenOptions *o, const Record *r)
+{
+    return maxf(SHEEN_ACCURACY_LEAST * o->accuracy, r->a * r->R_min / r->R);
 }
 
 #endif

@@ -12,25 +12,26 @@ typedef struct Grid {
     uint32_t *next;        // [accepted]
 } Grid;
 
-static bool would_cover(float accuracy, float spacing, const DiffusePoint *c, const DiffusePoint *q)
+static bool would_cover(float a, float spacing, const DiffusePoint *c, const DiffusePoint *q)
 {
     Vec3 d = v3_sub(c->p, q->p);
     float d2 = v3_length2(d);
-    return d2 < spacing * spacing && record_weight(spacing / accuracy, d2, v3_dot(c->n, q->n)) > 1.0f / accuracy;
+    return d2 < spacing * spacing && record_weight(spacing / a, d2, v3_dot(c->n, q->n)) > 1.0f / a;
 }
 
 static bool crowded(const Grid *g, const ShadingPoint points[], const uint32_t accepted[], const ShadingPoint *c,
-                    uint32_t x, uint32_t y, float accuracy, float spacing)
+                    uint32_t x, uint32_t y, float a, float spacing)
 {
     for (uint32_t cy = y ? y - 1 : 0; cy <= y + 1 && cy < g->ny; ++cy)
         for (uint32_t cx = x ? x - 1 : 0; cx <= x + 1 && cx < g->nx; ++cx)
             for (uint32_t e = g->first[(size_t)cy * g->nx + cx]; e; e = g->next[e - 1])
-                if (would_cover(accuracy, spacing, &c->point, &points[accepted[e - 1]].point)) return true;
+                if (would_cover(a, spacing, &c->point, &points[accepted[e - 1]].point)) return true;
     return false;
 }
 
-SheenStatus sheen_thin(float accuracy, float cell_px, uint32_t width, const ShadingPoint points[], size_t n,
-                       const uint32_t candidates[], const float spacing[], uint32_t accepted[], size_t *n_accepted)
+SheenStatus sheen_thin(float cell_px, uint32_t width, const ShadingPoint points[], size_t n,
+                       const uint32_t candidates[], const float spacing[], const float a[], uint32_t accepted[],
+                       size_t *n_accepted)
 {
     *n_accepted = 0;
     if (n == 0) return SHEEN_OK;
@@ -51,7 +52,7 @@ SheenStatus sheen_thin(float accuracy, float cell_px, uint32_t width, const Shad
     for (size_t i = 0; i < n; ++i) {
         const ShadingPoint *c = &points[candidates[i]];
         uint32_t x = c->pixel % width / g.side, y = c->pixel / width / g.side;
-        if (crowded(&g, points, accepted, c, x, y, accuracy, spacing[i])) continue;
+        if (crowded(&g, points, accepted, c, x, y, a[candidates[i]], spacing[i])) continue;
         uint32_t *head = &g.first[(size_t)y * g.nx + x];
         g.next[count] = *head;
         accepted[count++] = candidates[i];

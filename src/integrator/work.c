@@ -15,6 +15,8 @@ SheenOptions sheen_options_default(void)
         .brdf_error = 0.05f,
         .secondary = SHEEN_SECONDARY_CACHE,
         .neighbor_clamping = true,
+        .adaptive = true,
+        .discernible = 0.02f,
         .gradient_clamping = true,
     };
 }

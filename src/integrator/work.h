@@ -35,6 +35,8 @@ typedef struct SheenOptions {
     float brdf_error; // of a lobe in harmonics, relative energy; beyond it lobes are sampled
     SheenSecondary secondary;
     bool neighbor_clamping, gradient_clamping;
+    bool adaptive;     // records become more accurate until none is told from its neighbors
+    float discernible; // least difference that is told, relative to what a point reflects; with `adaptive`
     uint32_t seed;
 } SheenOptions;
 

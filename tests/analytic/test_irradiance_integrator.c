@@ -84,7 +84,9 @@ static void test_constant_sky(void **state)
     for (uint32_t bounces = 0; bounces <= 8; bounces += 8) {
         convex(bounces, 0, 1e-4f, "plane");
         convex(bounces, 1, 0.02f, "sphere");
-        convex(bounces, 2, 0.02f, "smooth mesh");
+        // Where the shading normal leans out of its facet by t, that facet hides (1 - cos t) / 2 of the sky: 3 % at the
+        // corners of this mesh, where t is 21 degrees.
+        convex(bounces, 2, 0.034f, "smooth mesh");
     }
 }
 

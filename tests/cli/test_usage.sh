@@ -51,7 +51,7 @@ for size in '' 10 10x x10 0x10 10x0 10x10x10 -1x10 10x-1 '10 x 10' 1e1x10 65537x
 done
 
 # Names.
-for option in --integrator --gradients --basis --secondary --neighbor-clamping --gradient-clamping --progress --aov; do
+for option in --integrator --gradients --basis --secondary --adaptive --neighbor-clamping --gradient-clamping --progress --aov; do
     refused "$option" "${R[@]}" "$option" nosuch
     refused "$option" "${R[@]}" "$option="
     refused "$option" "${R[@]}" "$option"
@@ -62,7 +62,7 @@ refused --aov "${R[@]}" --aov depth,,normal
 refused --time-limit "${R[@]}" --time-limit 1
 
 # Options and values of later versions say so.
-for option in error-metric adaptive discernible frame; do
+for option in error-metric frame; do
     refused "--$option" "${R[@]}" "--$option" 1
     grep -q 'not in this version' err || fail "--$option does not say that it is not in this version"
 done

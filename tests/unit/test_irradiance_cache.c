@@ -52,7 +52,7 @@ static void insert(SheenIrradianceCache *c, const Lit *r)
 }
 static Lit flat_record(Vec3 p, Vec3 n, float R, float E)
 {
-    return (Lit){{.p = p, .n = n, .R = R, .R_min = 0.0f, .R_sure = R}, {.E = rgb_gray(E)}};
+    return (Lit){{.p = p, .n = n, .R = R, .a = A, .R_min = 0.0f, .R_sure = R}, {.E = rgb_gray(E)}};
 }
 static Rgb predict(const Lit *r, Vec3 p, Vec3 n)
 {
@@ -90,12 +90,11 @@ static void test_records_in_front(void **state)
         Lit r = flat_record(q, n, 1.0f, 1.0f);
         float x = A * (random_unit(i, 6) - 0.5f), y = A * (random_unit(i, 7) - 0.5f);
         Vec3 p = v3_mad(v3_mad(q, x, f.t), y, f.b);
-        assert_false(record_in_front(&r.at, p, n, A, 0.0f));
-        assert_true(record_in_front(&r.at, v3_mad(p, -0.05f * A, n), n, A, 0.0f));
-        assert_false(
-            record_in_front(&r.at, v3_mad(p, -0.05f * A, n), n, A, 0.05f * A)); // the slack adds to the tolerance
-        assert_true(record_in_front(&r.at, v3_mad(p, -0.1f * A, n), n, A, 0.05f * A));
-        assert_false(record_in_front(&r.at, v3_mad(p, 0.05f * A, n), n, A, 0.0f));
+        assert_false(record_in_front(&r.at, p, n, 0.0f));
+        assert_true(record_in_front(&r.at, v3_mad(p, -0.05f * A, n), n, 0.0f));
+        assert_false(record_in_front(&r.at, v3_mad(p, -0.05f * A, n), n, 0.05f * A)); // the slack adds to the tolerance
+        assert_true(record_in_front(&r.at, v3_mad(p, -0.1f * A, n), n, 0.05f * A));
+        assert_false(record_in_front(&r.at, v3_mad(p, 0.05f * A, n), n, 0.0f));
     }
 }
 

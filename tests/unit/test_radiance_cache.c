@@ -59,7 +59,7 @@ static void insert(SheenRadianceCache *c, Vec3 p, Vec3 n, const Light *light)
     assert_non_null(padded);
     size_t size = basis_size(c->order) * sizeof(Rgb);
     for (size_t i = 0; i < 3; ++i) memcpy(padded + i * c->stride, light->part[i], size);
-    Record r = {.p = p, .n = n, .R = 1.0f, .R_sure = 1.0f};
+    Record r = {.p = p, .n = n, .R = 1.0f, .a = A, .R_sure = 1.0f};
     assert_int_equal(sheen_radiance_cache_insert(c, &r, padded), SHEEN_OK);
     free(padded);
 }

@@ -32,7 +32,7 @@ static SheenIrradianceCache *make_cache(float noise, float slope)
     for (uint32_t i = 0; i < N; ++i) {
         Vec3 p = v3(SPACING * (float)(i % SIDE), SPACING * (float)(i / SIDE), 0);
         float E = (1.0f + slope * p.x) * (1.0f + noise * normal_deviate(i)), R = 1.1f * SPACING / A;
-        Record r = {.p = p, .n = v3(0, 0, 1), .R = R, .R_min = R, .R_sure = R, .error = noise};
+        Record r = {.p = p, .n = v3(0, 0, 1), .a = A, .R = R, .R_min = R, .R_sure = R, .error = noise};
         IrradianceLight light = {.E = rgb_gray(E)};
         for (int k = 0; k < 3; ++k) light.translation[k] = v3(slope, 0, 0);
         assert_int_equal(sheen_irradiance_cache_insert(c, &r, &light), SHEEN_OK);
@@ -116,7 +116,7 @@ static SheenRadianceCache *make_radiance(float slope)
     for (uint32_t i = 0; i < N; ++i) {
         Vec3 p = v3(SPACING * (float)(i % SIDE), SPACING * (float)(i / SIDE), 0);
         float R = 1.1f * SPACING / A;
-        Record r = {.p = p, .n = v3(0, 0, 1), .R = R, .R_min = R, .R_sure = 0.1f * R, .error = NOISE};
+        Record r = {.p = p, .n = v3(0, 0, 1), .a = A, .R = R, .R_min = R, .R_sure = 0.1f * R, .error = NOISE};
         for (size_t k = 0; k < 3; ++k) {
             light[k] = (1.0f + slope * p.x) * (1.0f + NOISE * normal_deviate(i));
             light[c->stride + k] = slope * frame.t.x;
@@ -179,11 +179,11 @@ static void test_small_record_stays_itself(void **state)
     for (uint32_t i = 0; i < 100; ++i) {
         float R = 1.0f / A;
         Vec3 p = v3(1.0f + 1e-3f * (float)i, 1.55f, 0);
-        Record large = {.p = p, .n = v3(0, 0, 1), .R = R, .R_min = R, .R_sure = R, .error = NOISE};
+        Record large = {.p = p, .n = v3(0, 0, 1), .a = A, .R = R, .R_min = R, .R_sure = R, .error = NOISE};
         IrradianceLight bright = {.E = rgb_gray(1.0f)};
         assert_int_equal(sheen_irradiance_cache_insert(c, &large, &bright), SHEEN_OK);
     }
-    Record dark = {.p = v3(1.25f, 1.55f, 0), .n = v3(0, 0, 1), .R = 0.1f, .R_min = 0.1f, .R_sure = 0.1f};
+    Record dark = {.p = v3(1.25f, 1.55f, 0), .n = v3(0, 0, 1), .a = A, .R = 0.1f, .R_min = 0.1f, .R_sure = 0.1f};
     dark.error = NOISE;
     IrradianceLight black = {.E = rgb_gray(1e-3f)};
     assert_int_equal(sheen_irradiance_cache_insert(c, &dark, &black), SHEEN_OK);

@@ -41,7 +41,12 @@ static SheenRecordStore *store_of_clamped(void)
     SheenRecordStore *s = store_begin();
     for (uint32_t i = 0; i < N; ++i) {
         float R = 0.2f * expf(3.0f * random_unit(i, 5));
-        Record r = {.p = random_point(i), .n = random_normal(i), .R = R, .R_min = R * random_unit(i, 6), .R_sure = R};
+        Record r = {.p = random_point(i),
+                    .n = random_normal(i),
+                    .R = R,
+                    .a = 0.2f,
+                    .R_min = R * random_unit(i, 6),
+                    .R_sure = R};
         assert_int_equal(sheen_store_insert(s, &r), SHEEN_OK);
     }
     return s;
@@ -80,7 +85,8 @@ static void test_appended_records_keep_their_radii(void **state)
     assert_int_equal(copy->n, N);
     assert_memory_equal(copy->records, clamped->records, N * sizeof *copy->records);
     // A small one beside them, which would shrink its neighbors if it were inserted.
-    Record small = {.p = clamped->records[0].p, .n = v3(0, 0, 1), .R = 1e-3f, .R_min = 0.0f, .R_sure = 1e-3f};
+    Record small = {
+        .p = clamped->records[0].p, .n = v3(0, 0, 1), .R = 1e-3f, .a = 0.2f, .R_min = 0.0f, .R_sure = 1e-3f};
     assert_int_equal(sheen_store_append(copy, &small), SHEEN_OK);
     assert_memory_equal(copy->records, clamped->records, N * sizeof *copy->records);
     assert_int_equal(sheen_store_insert(clamped, &small), SHEEN_OK);
@@ -106,7 +112,8 @@ static void test_reindexed_is_as_appended(void **state)
     assert_true(sheen_store_bytes(s) != before);
     // Insertion goes on, with clamping, as in the copy.
     for (uint32_t i = 0; i < 100; ++i) {
-        Record r = {.p = random_point(i + 2 * N), .n = random_normal(i), .R = 0.3f, .R_min = 0.01f, .R_sure = 0.3f};
+        Record r = {
+            .p = random_point(i + 2 * N), .n = random_normal(i), .R = 0.3f, .a = 0.2f, .R_min = 0.01f, .R_sure = 0.3f};
         assert_int_equal(sheen_store_insert(s, &r), SHEEN_OK);
         assert_int_equal(sheen_store_insert(copy, &r), SHEEN_OK);
     }
@@ -135,17 +142,17 @@ static void test_enlarged_records_give_way(void **state)
     const Bounds bounds = {{-1, -1, -1}, {1, 1, 1}};
     const Vec3 n = v3(0, 0, 1);
     const struct {
-        float R_most, reach;
+        float most, reach; // in units of a
     } cases[] = {{INFINITY, 2.0f}, {3.0f, 2.0f}, {1.0f, 1.0f}, {0.1f, 0.5f}};
     SheenRecordStore *s;
     assert_int_equal(sheen_store_create(0.1f, false, &bounds, &s), SHEEN_OK);
-    Record r = {.n = n, .R = 2.0f, .R_min = 2.0f, .R_sure = 0.5f};
+    Record r = {.n = n, .R = 2.0f, .a = 0.1f, .R_min = 2.0f, .R_sure = 0.5f};
     assert_int_equal(sheen_store_insert(s, &r), SHEEN_OK);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         Contributors within, beyond;
         float reach = 0.1f * cases[i].reach;
-        sheen_store_find_near(s, v3(0.99f * reach, 0, 0), n, cases[i].R_most, &within);
-        sheen_store_find_near(s, v3(1.01f * reach, 0, 0), n, cases[i].R_most, &beyond);
+        sheen_store_find_near(s, v3(0.99f * reach, 0, 0), n, 0.1f * cases[i].most, &within);
+        sheen_store_find_near(s, v3(1.01f * reach, 0, 0), n, 0.1f * cases[i].most, &beyond);
         assert_int_equal(within.n, 1);
         assert_int_equal(beyond.n, 0);
     }

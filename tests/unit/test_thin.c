@@ -56,7 +56,9 @@ static size_t thin(const ShadingPoint points[], size_t n, const uint32_t candida
                    uint32_t accepted[])
 {
     size_t count = 99;
-    assert_int_equal(sheen_thin(A, CELL_PX, WIDTH, points, n, candidates, spacing, accepted, &count), SHEEN_OK);
+    static float a[N];
+    for (size_t i = 0; i < N; ++i) a[i] = A;
+    assert_int_equal(sheen_thin(CELL_PX, WIDTH, points, n, candidates, spacing, a, accepted, &count), SHEEN_OK);
     return count;
 }
 

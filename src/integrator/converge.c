@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integrator/converge.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { BLOCK = 4096 }; // points an item
+
+/** How far the records of a store reach. */
+typedef struct Reaches {
+    float *reach; // [n] metres
+    uint32_t n;
+} Reaches;
+
+static SheenStatus remember(const SheenRecordStore *store, Reaches *out)
+{
+    float *grown = realloc(out->reach, ((size_t)store->n + 1) * sizeof *grown);
+    if (!grown) return SHEEN_ERR_NOMEM;
+    *out = (Reaches){grown, store->n};
+    for (uint32_t i = 0; i < store->n; ++i) out->reach[i] = store->records[i].a * store->records[i].R;
+    return SHEEN_OK;
+}
+
+// Adds the spheres of new records and, as far as they reached, of those that reach less now.
+static SheenStatus add_changes(const SheenRecordStore *store, const Reaches *before, SheenOctree *spheres)
+{
+    SheenStatus status = SHEEN_OK;
+    for (uint32_t i = 0; i < store->n && status == SHEEN_OK; ++i) {
+        const Record *r = &store->records[i];
+        float reach = r->a * r->R;
+        if (i >= before->n)
+            status = sheen_octree_insert(spheres, r->p, reach, i);
+        else if (reach < before->reach[i])
+            status = sheen_octree_insert(spheres, r->p, before->reach[i], i);
+    }
+    return status;
+}
+
+/** Points, and those among them that spheres hold. */
+typedef struct Held {
+    const SheenOctree *spheres;
+    const ShadingPoint *points; // [n]
+    size_t n;
+    unsigned char *held; // [n]
+} Held;
+
+static void held_task(void *user, size_t item, unsigned worker)
+{
+    (void)worker;
+    Held *h = user;
+    for (size_t i = item * BLOCK; i < h->n && i < (item + 1) * BLOCK; ++i)
+        h->held[i] = sheen_octree_holds(h->spheres, h->points[i].point.p);
+}
+
+/** The rounds' state. */
+typedef struct Rounds {
+    const Convergence *c;
+    const ShadingPoint *all; // [n_all]
+    size_t n_all;
+    ShadingPoint *points; // [n] those that the last round touched
+    size_t n;
+    unsigned char *held;     // [n_all]
+    Reaches reaches;         // of the records, before they changed
+    SheenOctree *touched[2]; // where this round changed records, and where the last one did, NULL in the first
+} Rounds;
+
+static SheenStatus choose_points(Rounds *r)
+{
+    Held h = {r->touched[0], r->all, r->n_all, r->held};
+    if (!sheen_pool_run(r->c->work->pool, (r->n_all + BLOCK - 1) / BLOCK, held_task, &h, r->c->work->cancel))
+        return SHEEN_ERR_CANCELLED;
+    r->n = 0;
+    for (size_t i = 0; i < r->n_all; ++i)
+        if (r->held[i]) r->points[r->n++] = r->all[i];
+    return SHEEN_OK;
+}
+
+static SheenStatus refine(Rounds *r, SheenStats *stats)
+{
+    const Convergence *c = r->c;
+    SheenRecordStore *store = adapt_store(&c->cache);
+    if (!c->view) return SHEEN_OK;
+    SheenStatus status = c->view->direct ? SHEEN_OK : sheen_adapt_look(c->work, stats, c->view);
+    if (status == SHEEN_OK) status = remember(store, &r->reaches);
+    if (status == SHEEN_OK) status = sheen_adapt_pass(c->work, c->view, r->touched[1] ? r->touched : NULL, &c->cache);
+    if (status == SHEEN_OK) status = add_changes(store, &r->reaches, r->touched[0]);
+    return status == SHEEN_OK ? sheen_store_reindex(store) : status;
+}
+
+// Look-ups depend on the order and the radii of the octree's spheres: it is built anew, so that they are the same after
+// the records were written and read.
+static SheenStatus run_round(Rounds *r, SheenStats *stats)
+{
+    const Convergence *c = r->c;
+    SheenRecordStore *store = adapt_store(&c->cache);
+    sheen_octree_destroy(&r->touched[1]);
+    r->touched[1] = r->touched[0];
+    SheenStatus status = sheen_octree_create_alike(store->octree, &r->touched[0]);
+    if (status == SHEEN_OK) status = remember(store, &r->reaches);
+    if (status == SHEEN_OK) status = sheen_fill_run(c->work, c->kind, r->points, r->n, stats);
+    if (status == SHEEN_OK) status = add_changes(store, &r->reaches, r->touched[0]);
+    if (status == SHEEN_OK) status = sheen_store_reindex(store);
+    if (status == SHEEN_OK) status = refine(r, stats);
+    return status == SHEEN_OK ? choose_points(r) : status;
+}
+
+SheenStatus sheen_converge(const Convergence *c, const ShadingPoint points[], size_t n, SheenStats *stats)
+{
+    Rounds r = {.c = c, .all = points, .n_all = n, .n = n};
+    if (n == 0) return SHEEN_OK;
+    r.points = malloc(n * sizeof *r.points);
+    r.held = malloc(n);
+    SheenStatus status = r.points && r.held ? SHEEN_OK : SHEEN_ERR_NOMEM;
+    if (status == SHEEN_OK) memcpy(r.points, points, n * sizeof *points);
+    for (unsigned round = 0; round < c->rounds && r.n > 0 && status == SHEEN_OK; ++round) status = run_round(&r, stats);
+    for (int i = 0; i < 2; ++i) sheen_octree_destroy(&r.touched[i]);
+    free(r.reaches.reach);
+    free(r.points);
+    free(r.held);
+    return status;
+}
