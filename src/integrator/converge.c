@@ -6,33 +6,21 @@
 
 enum { BLOCK = 4096 }; // points an item
 
-/** How far the records of a store reach. */
-typedef struct Reaches {
-    float *reach; // [n] metres
-    uint32_t n;
-} Reaches;
-
-static SheenStatus remember(const SheenRecordStore *store, Reaches *out)
+// Adds the spheres, as the octree has them, of records from number `first` on, and of those that reach less now.
+static SheenStatus add_changes(const SheenRecordStore *store, uint32_t first, SheenOctree *spheres)
 {
-    float *grown = realloc(out->reach, ((size_t)store->n + 1) * sizeof *grown);
-    if (!grown) return SHEEN_ERR_NOMEM;
-    *out = (Reaches){grown, store->n};
-    for (uint32_t i = 0; i < store->n; ++i) out->reach[i] = store->records[i].a * store->records[i].R;
-    return SHEEN_OK;
-}
-
-// Adds the spheres of new records and, as far as they reached, of those that reach less now.
-static SheenStatus add_changes(const SheenRecordStore *store, const Reaches *before, SheenOctree *spheres)
-{
+    const float same = 0.99999f; // of a reach that was squared and drawn again
+    const SheenOctree *t = store->octree;
     SheenStatus status = SHEEN_OK;
+    float *reach = calloc((size_t)store->n + 1, sizeof *reach);
+    if (!reach) return SHEEN_ERR_NOMEM;
+    for (uint32_t b = 1; b < t->n_blocks; ++b)
+        for (uint32_t k = 0; k < t->blocks[b].n; ++k) reach[t->blocks[b].record[k]] = sqrtf(t->blocks[b].reach2[k]);
     for (uint32_t i = 0; i < store->n && status == SHEEN_OK; ++i) {
         const Record *r = &store->records[i];
-        float reach = r->a * r->R;
-        if (i >= before->n)
-            status = sheen_octree_insert(spheres, r->p, reach, i);
-        else if (reach < before->reach[i])
-            status = sheen_octree_insert(spheres, r->p, before->reach[i], i);
+        if (i >= first || r->a * r->R < same * reach[i]) status = sheen_octree_insert(spheres, r->p, reach[i], i);
     }
+    free(reach);
     return status;
 }
 
@@ -60,7 +48,6 @@ typedef struct Rounds {
     ShadingPoint *points; // [n] those that the last round touched
     size_t n;
     unsigned char *held;     // [n_all]
-    Reaches reaches;         // of the records, before they changed
     SheenOctree *touched[2]; // where this round changed records, and where the last one did, NULL in the first
 } Rounds;
 
@@ -81,9 +68,8 @@ static SheenStatus refine(Rounds *r, SheenStats *stats)
     SheenRecordStore *store = adapt_store(&c->cache);
     if (!c->view) return SHEEN_OK;
     SheenStatus status = c->view->direct ? SHEEN_OK : sheen_adapt_look(c->work, stats, c->view);
-    if (status == SHEEN_OK) status = remember(store, &r->reaches);
     if (status == SHEEN_OK) status = sheen_adapt_pass(c->work, c->view, r->touched[1] ? r->touched : NULL, &c->cache);
-    if (status == SHEEN_OK) status = add_changes(store, &r->reaches, r->touched[0]);
+    if (status == SHEEN_OK) status = add_changes(store, store->n, r->touched[0]);
     return status == SHEEN_OK ? sheen_store_reindex(store) : status;
 }
 
@@ -93,12 +79,12 @@ static SheenStatus run_round(Rounds *r, SheenStats *stats)
 {
     const Convergence *c = r->c;
     SheenRecordStore *store = adapt_store(&c->cache);
+    uint32_t first = store->n;
     sheen_octree_destroy(&r->touched[1]);
     r->touched[1] = r->touched[0];
     SheenStatus status = sheen_octree_create_alike(store->octree, &r->touched[0]);
-    if (status == SHEEN_OK) status = remember(store, &r->reaches);
     if (status == SHEEN_OK) status = sheen_fill_run(c->work, c->kind, r->points, r->n, stats);
-    if (status == SHEEN_OK) status = add_changes(store, &r->reaches, r->touched[0]);
+    if (status == SHEEN_OK) status = add_changes(store, first, r->touched[0]);
     if (status == SHEEN_OK) status = sheen_store_reindex(store);
     if (status == SHEEN_OK) status = refine(r, stats);
     return status == SHEEN_OK ? choose_points(r) : status;
@@ -114,7 +100,6 @@ SheenStatus sheen_converge(const Convergence *c, const ShadingPoint points[], si
     if (status == SHEEN_OK) memcpy(r.points, points, n * sizeof *points);
     for (unsigned round = 0; round < c->rounds && r.n > 0 && status == SHEEN_OK; ++round) status = run_round(&r, stats);
     for (int i = 0; i < 2; ++i) sheen_octree_destroy(&r.touched[i]);
-    free(r.reaches.reach);
     free(r.points);
     free(r.held);
     return status;
