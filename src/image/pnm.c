@@ -63,7 +63,7 @@ static bool pnm_recognize(const uint8_t *data, size_t size)
 static uint8_t load_byte(const uint8_t *pixels, size_t sample, uint32_t white)
 {
     uint32_t value = white < 256 ? pixels[sample] : (uint32_t)pixels[2 * sample] << 8 | pixels[2 * sample + 1];
-    return value >= white ? 255 : (uint8_t)((255 * value + white / 2) / white);
+    return (uint8_t)(value >= white ? 255 : (255 * value + white / 2) / white);
 }
 
 static SheenStatus pnm_decode_bytes(const ImageSource *source, ImageChannels wanted, ImageBytes *out)
