@@ -59,6 +59,8 @@ static SheenStatus create_session(FrameMaker *m)
     return sheen_session_create(&desc, &m->stats->render, &m->stats->build, &m->session);
 }
 
+static const char filling[] = "filling frame"; // for the progress
+
 // Fills all frames until a pass adds nothing: later frames' records and refinement uncover points of earlier ones.
 static SheenStatus fill_all(FrameMaker *m)
 {
@@ -68,7 +70,7 @@ static SheenStatus fill_all(FrameMaker *m)
     uint64_t before, after = UINT64_MAX;
     for (int pass = 0; pass < PASSES_MAX && status == SHEEN_OK; ++pass) {
         before = after;
-        status = run_pass(m, sheen_session_fill, "filling frame", v->records_first, v->records_last);
+        status = run_pass(m, sheen_session_fill, filling, v->records_first, v->records_last);
         RecordCounts counts = count_kept(m);
         after = record_counts_all(&counts);
         if (after == before) break;
@@ -79,9 +81,8 @@ static SheenStatus fill_all(FrameMaker *m)
 /** Looks at and fills what is to be filled before the first frame. @return the library's status */
 static SheenStatus fill_before(FrameMaker *m, long begin)
 {
-    static const char looking[] = "looking at frame", filling[] = "filling frame";
     const AnimateValues *v = m->values;
-    SheenStatus status = run_pass(m, sheen_session_look, looking, v->records_first, v->records_last);
+    SheenStatus status = run_pass(m, sheen_session_look, "looking at frame", v->records_first, v->records_last);
     if (status != SHEEN_OK) return status;
     if (v->prefill == SWITCH_OFF) return run_pass(m, fill_and_settle, filling, v->first, begin - 1);
     return fill_all(m);

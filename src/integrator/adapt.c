@@ -14,13 +14,6 @@ enum {
 
 // ---- what is looked at --------------------------------------------------------------------------------------------
 
-static void look_at_some(const SheenFilm *film, Picture *picture)
-{
-    for (uint32_t y = 0; y < film->height; ++y)
-        for (uint32_t x = 0; x < film->width; ++x)
-            picture->samples[(size_t)y * film->width + x] = x % STRIDE == 0 && y % STRIDE == 0;
-}
-
 SheenStatus sheen_adapt_look(const SheenWork *work, SheenStats *stats, SheenAdaptView *out)
 {
     *out = (SheenAdaptView){0};
@@ -31,10 +24,15 @@ SheenStatus sheen_adapt_look(const SheenWork *work, SheenStats *stats, SheenAdap
     SheenStatus status = out->direct ? sheen_film_create(work->width, work->height, 0, &film) : SHEEN_ERR_NOMEM;
     if (status == SHEEN_OK && !sheen_picture_create(work, film, &picture)) status = SHEEN_ERR_NOMEM;
     if (status == SHEEN_OK) {
-        look_at_some(film, &picture);
+        // Part of the fill: its progress is not that of a picture, nor are its seconds.
+        SheenWork quiet = *work;
+        quiet.progress = NULL;
+        SheenStats counted = {0};
         const SheenCaches none = {0};
         const PictureCaches caches = {&none, &none};
-        status = sheen_shade(work, &caches, 0, &picture, &out->seen, stats);
+        sheen_every_pixel(STRIDE, work->width, work->height, picture.samples);
+        status = sheen_shade(&quiet, &caches, 0, &picture, &out->seen, &counted);
+        sheen_stats_add(stats, &counted);
     }
     for (size_t i = 0; i < n && status == SHEEN_OK; ++i) out->direct[i] = fabsf(rgb_luminance(film->color[i]));
     sheen_picture_free(&picture);

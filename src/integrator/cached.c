@@ -103,9 +103,8 @@ SheenStatus sheen_cached_look(SheenCached *c, const SheenView *view, SheenStats 
     double start = sheen_clock_seconds();
     SheenWork work = sheen_work_for(&c->work, view);
     SeenPoints seen = {0};
-    uint32_t *ends = calloc((size_t)view->width * view->height, sizeof *ends);
-    for (uint32_t y = 0; y < view->height && ends; y += STRIDE)
-        for (uint32_t x = 0; x < view->width; x += STRIDE) ends[(size_t)y * view->width + x] = 1;
+    uint32_t *ends = malloc((size_t)view->width * view->height * sizeof *ends);
+    if (ends) sheen_every_pixel(STRIDE, view->width, view->height, ends);
     SheenStatus status = ends ? sheen_first_points(&work, ends, stats, &seen) : SHEEN_ERR_NOMEM;
     if (status == SHEEN_OK) status = add_seeds(c, &seen);
     sheen_seen_free(&seen);

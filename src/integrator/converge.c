@@ -6,22 +6,26 @@
 
 enum { BLOCK = 4096 }; // points an item
 
-// Adds the spheres, as the octree has them, of records from number `first` on, and of those that reach less now.
-static SheenStatus add_changes(const SheenRecordStore *store, uint32_t first, SheenOctree *spheres)
+// Adds the spheres, as the octree has them, of records from number `first` on, and of those that reach less now. Where
+// there are any the octree is built anew: look-ups depend on the order and the radii of its spheres, and are to be the
+// same after the records were written and read.
+static SheenStatus take_changes(SheenRecordStore *store, uint32_t first, SheenOctree *spheres)
 {
-    const float same = 0.99999f; // of a reach that was squared and drawn again
     const SheenOctree *t = store->octree;
     SheenStatus status = SHEEN_OK;
-    float *reach = calloc((size_t)store->n + 1, sizeof *reach);
-    if (!reach) return SHEEN_ERR_NOMEM;
+    bool changed = false;
+    float *reach2 = calloc((size_t)store->n + 1, sizeof *reach2);
+    if (!reach2) return SHEEN_ERR_NOMEM;
     for (uint32_t b = 1; b < t->n_blocks; ++b)
-        for (uint32_t k = 0; k < t->blocks[b].n; ++k) reach[t->blocks[b].record[k]] = sqrtf(t->blocks[b].reach2[k]);
+        for (uint32_t k = 0; k < t->blocks[b].n; ++k) reach2[t->blocks[b].record[k]] = t->blocks[b].reach2[k];
     for (uint32_t i = 0; i < store->n && status == SHEEN_OK; ++i) {
         const Record *r = &store->records[i];
-        if (i >= first || r->a * r->R < same * reach[i]) status = sheen_octree_insert(spheres, r->p, reach[i], i);
+        if (i < first && !(sqrf(r->a * r->R) < reach2[i])) continue;
+        changed = true;
+        status = sheen_octree_insert(spheres, r->p, sqrtf(reach2[i]), i);
     }
-    free(reach);
-    return status;
+    free(reach2);
+    return changed && status == SHEEN_OK ? sheen_store_reindex(store) : status;
 }
 
 /** Points, and those among them that spheres hold. */
@@ -69,12 +73,9 @@ static SheenStatus refine(Rounds *r, SheenStats *stats)
     if (!c->view) return SHEEN_OK;
     SheenStatus status = c->view->direct ? SHEEN_OK : sheen_adapt_look(c->work, stats, c->view);
     if (status == SHEEN_OK) status = sheen_adapt_pass(c->work, c->view, r->touched[1] ? r->touched : NULL, &c->cache);
-    if (status == SHEEN_OK) status = add_changes(store, store->n, r->touched[0]);
-    return status == SHEEN_OK ? sheen_store_reindex(store) : status;
+    return status == SHEEN_OK ? take_changes(store, store->n, r->touched[0]) : status;
 }
 
-// Look-ups depend on the order and the radii of the octree's spheres: it is built anew, so that they are the same after
-// the records were written and read.
 static SheenStatus run_round(Rounds *r, SheenStats *stats)
 {
     const Convergence *c = r->c;
@@ -84,10 +85,8 @@ static SheenStatus run_round(Rounds *r, SheenStats *stats)
     r->touched[1] = r->touched[0];
     SheenStatus status = sheen_octree_create_alike(store->octree, &r->touched[0]);
     if (status == SHEEN_OK) status = sheen_fill_run(c->work, c->kind, r->points, r->n, stats);
-    if (status == SHEEN_OK) status = add_changes(store, first, r->touched[0]);
-    if (status == SHEEN_OK) status = sheen_store_reindex(store);
-    if (status == SHEEN_OK) status = refine(r, stats);
-    return status == SHEEN_OK ? choose_points(r) : status;
+    if (status == SHEEN_OK) status = take_changes(store, first, r->touched[0]);
+    return status == SHEEN_OK ? refine(r, stats) : status;
 }
 
 SheenStatus sheen_converge(const Convergence *c, const ShadingPoint points[], size_t n, SheenStats *stats)
@@ -98,7 +97,10 @@ SheenStatus sheen_converge(const Convergence *c, const ShadingPoint points[], si
     r.held = malloc(n);
     SheenStatus status = r.points && r.held ? SHEEN_OK : SHEEN_ERR_NOMEM;
     if (status == SHEEN_OK) memcpy(r.points, points, n * sizeof *points);
-    for (unsigned round = 0; round < c->rounds && r.n > 0 && status == SHEEN_OK; ++round) status = run_round(&r, stats);
+    for (unsigned round = 0; round < c->rounds && r.n > 0 && status == SHEEN_OK; ++round) {
+        status = run_round(&r, stats);
+        if (status == SHEEN_OK && round + 1 < c->rounds) status = choose_points(&r);
+    }
     for (int i = 0; i < 2; ++i) sheen_octree_destroy(&r.touched[i]);
     free(r.points);
     free(r.held);

@@ -24,6 +24,12 @@ Tile sheen_tile(const SheenWork *work, uint32_t index)
     return t;
 }
 
+void sheen_every_pixel(uint32_t stride, uint32_t width, uint32_t height, uint32_t ends[])
+{
+    for (uint32_t y = 0; y < height; ++y)
+        for (uint32_t x = 0; x < width; ++x) ends[(size_t)y * width + x] = x % stride == 0 && y % stride == 0;
+}
+
 void sheen_visibility_free(Visibility *v)
 {
     sheen_seen_free(&v->seen);

@@ -37,6 +37,9 @@ typedef struct SampleRange {
     const uint32_t *ends; // [pixels] ... below its own end; NULL: all of them
 } SampleRange;
 
+/** Sets the ends of one sample of every stride-th pixel both ways, of no other. @param ends  [height][width] */
+void sheen_every_pixel(uint32_t stride, uint32_t width, uint32_t height, uint32_t ends[]);
+
 /** Buffers and result of one worker. */
 typedef struct Visibility {
     SeenPoints seen;
