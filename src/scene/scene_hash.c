@@ -3,7 +3,7 @@
 // completes, is left out.
 #include "scene/scene_hash.h"
 
-#define XXH_INLINE_ALL
+#define XXH_STATIC_LINKING_ONLY // the size of its state
 #include <xxhash.h>
 
 typedef XXH3_state_t Feed;
