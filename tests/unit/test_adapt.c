@@ -103,6 +103,86 @@ static void test_refined_records(void **state)
     sheen_store_destroy(&s);
 }
 
+/** Two records of irradiance 1 and 2 on a plane, both of which serve a point between them. */
+typedef struct Pair {
+    SheenIrradianceCache *cache;
+    SheenPool *pool;
+    SheenWork work;
+    ShadingPoint point;
+    float direct;
+    SheenAdaptView view;
+} Pair;
+
+static void pair_begin(float direct, Pair *p)
+{
+    const Bounds bounds = {{-1, -1, -1}, {1, 1, 1}};
+    const Vec3 n = v3(0, 0, 1);
+    *p = (Pair){.direct = direct, .work.options = sheen_options_default()};
+    assert_int_equal(sheen_pool_create(1, &p->pool), SHEEN_OK);
+    p->work.pool = p->pool;
+    assert_int_equal(sheen_irradiance_cache_create(0.2f, true, &bounds, &p->cache), SHEEN_OK);
+    for (int i = 0; i < 2; ++i) {
+        Record r = {.p = v3(0.3f * (float)i, 0, 0), .n = n, .R = 2, .a = 0.2f, .R_min = 0.01f, .R_sure = 2};
+        IrradianceLight light = {.E = rgb_gray(1.0f + (float)i)};
+        assert_int_equal(sheen_irradiance_cache_append(p->cache, &r, &light), SHEEN_OK);
+    }
+    p->point = (ShadingPoint){.point = {.p = v3(0.1f, 0, 0), .ng = n, .n = n, .bent = n, .reflectance = rgb_gray(1.0f)},
+                              .throughput = rgb_gray(1.0f),
+                              .footprint = 0.01f};
+    p->view = (SheenAdaptView){.seen = {.points = &p->point, .n_points = 1}, .direct = &p->direct};
+}
+
+// @return records that serve the point after a pass
+static unsigned pair_pass(Pair *p, SheenOctree *const touched[2], Contributors *c)
+{
+    assert_int_equal(sheen_adapt_pass(&p->work, &p->view, touched, &(AdaptCache){.irradiance = p->cache}), SHEEN_OK);
+    assert_int_equal(sheen_store_reindex(p->cache->store), SHEEN_OK);
+    sheen_store_find(p->cache->store, p->point.point.p, p->point.point.n, 0.0f, c);
+    return c->n;
+}
+
+static void pair_end(Pair *p)
+{
+    sheen_irradiance_cache_destroy(&p->cache);
+    sheen_pool_destroy(&p->pool);
+}
+
+// The farther record is left out at the point, and just there: its a is hardly less than its distance over R, 0.2 / 2.
+static void test_a_pass_leaves_out(void **state)
+{
+    (void)state;
+    Pair p;
+    Contributors c;
+    pair_begin(0.0f, &p);
+    assert_int_equal(pair_pass(&p, NULL, &c), 1);
+    assert_int_equal(c.record[0], 0);
+    float a = p.cache->store->records[1].a;
+    assert_true(a < 0.1f && a > 0.0999f);
+    assert_true(p.cache->store->records[0].a == 0.2f);
+    pair_end(&p);
+}
+
+// Before bright direct light the difference is not told; where nothing was touched it is not looked for.
+static void test_a_pass_leaves_alone(void **state)
+{
+    (void)state;
+    const Bounds bounds = {{-1, -1, -1}, {1, 1, 1}};
+    Pair p;
+    Contributors c;
+    pair_begin(1e3f, &p);
+    assert_int_equal(pair_pass(&p, NULL, &c), 2);
+    pair_end(&p);
+    pair_begin(0.0f, &p);
+    SheenOctree *touched[2];
+    for (int i = 0; i < 2; ++i) assert_int_equal(sheen_octree_create(&bounds, &touched[i]), SHEEN_OK);
+    assert_int_equal(sheen_octree_insert(touched[0], v3(0.5f, 0, 0), 0.39f, 0), SHEEN_OK);
+    assert_int_equal(pair_pass(&p, touched, &c), 2);
+    assert_int_equal(sheen_octree_insert(touched[1], v3(0.5f, 0, 0), 0.41f, 0), SHEEN_OK);
+    assert_int_equal(pair_pass(&p, touched, &c), 1);
+    for (int i = 0; i < 2; ++i) sheen_octree_destroy(&touched[i]);
+    pair_end(&p);
+}
+
 static void test_accuracies(void **state)
 {
     (void)state;
@@ -122,6 +202,7 @@ static void test_accuracies(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_pass_leaves_out),  cmocka_unit_test(test_a_pass_leaves_alone),
         cmocka_unit_test(test_alike_stay),         cmocka_unit_test(test_the_lightest_that_is_told_goes),
         cmocka_unit_test(test_fixed_records_stay), cmocka_unit_test(test_one_after_another),
         cmocka_unit_test(test_refined_records),    cmocka_unit_test(test_accuracies),
