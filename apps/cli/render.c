@@ -121,9 +121,10 @@ static void print_summary(const Run *run, const RunStats *s)
     fprintf(stderr, ", %.2f s\n", s->total);
     if (!run->report.verbose) return;
     fprintf(stderr,
-            "sheen: seconds: load %.2f, build %.2f, visibility %.2f, fill %.2f, direct %.2f, interpolate %.2f, "
-            "write %.2f\n",
-            s->load, s->build, r->time_visibility, r->time_fill, r->time_direct, r->time_interpolate, s->write);
+            "sheen: seconds: load %.2f, build %.2f, visibility %.2f, fill %.2f (refine %.2f), direct %.2f, "
+            "interpolate %.2f, write %.2f\n",
+            s->load, s->build, r->time_visibility, r->time_fill, r->time_refine, r->time_direct, r->time_interpolate,
+            s->write);
     fprintf(stderr, "sheen: rays: camera %llu, shadow %llu, gather %llu, path %llu, specular %llu\n",
             (unsigned long long)r->rays_camera, (unsigned long long)r->rays_shadow, (unsigned long long)r->rays_gather,
             (unsigned long long)r->rays_path, (unsigned long long)r->rays_specular);

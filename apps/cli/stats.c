@@ -16,12 +16,13 @@ static json_int_t peak_rss_bytes(void)
     return (json_int_t)usage.ru_maxrss * 1024; // Linux counts kilobytes
 }
 
+// Stages that follow each other; but "refine" is a part of "fill".
 static json_t *time_json(const RunStats *run)
 {
     const SheenStats *s = &run->render;
-    return json_pack("{s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "load", run->load, "build", run->build, "visibility",
-                     s->time_visibility, "fill", s->time_fill, "direct", s->time_direct, "interpolate",
-                     s->time_interpolate, "write", run->write, "total", run->total);
+    return json_pack("{s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "load", run->load, "build", run->build,
+                     "visibility", s->time_visibility, "fill", s->time_fill, "refine", s->time_refine, "direct",
+                     s->time_direct, "interpolate", s->time_interpolate, "write", run->write, "total", run->total);
 }
 
 static json_t *rays_json(const SheenStats *s)
@@ -53,12 +54,14 @@ void stats_sum(SheenStats *total, size_t n, const SheenStats *frame)
     sheen_stats_add(total, frame);
     total->time_visibility += frame->time_visibility;
     total->time_fill += frame->time_fill;
+    total->time_refine += frame->time_refine;
     total->time_direct += frame->time_direct;
     total->time_interpolate += frame->time_interpolate;
     total->records += frame->records;
     total->radiance_records += frame->radiance_records;
     total->deep_records += frame->deep_records;
     total->passes += frame->passes;
+    if (frame->refined > total->refined) total->refined = frame->refined;
     if (frame->cache_bytes > total->cache_bytes) total->cache_bytes = frame->cache_bytes;
     if (n == 0 || frame->spp_done < total->spp_done) total->spp_done = frame->spp_done;
     total->spp_mean += (frame->spp_mean - total->spp_mean) / (double)(n + 1);
@@ -81,13 +84,14 @@ static char *to_json(const Run *run, const RunStats *stats)
     const SheenStats *s = &stats->render;
     const RenderValues *v = run->values;
     json_t *object = json_pack(
-        "{s:s, s:o, s:s, s:[I, I], s:i, s:I, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I, s:f, s:I, s:o}", "version",
+        "{s:s, s:o, s:s, s:[I, I], s:i, s:I, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I, s:I, s:f, s:I, s:o}", "version",
         SHEEN_VERSION, "scene", json_text(run->scene_path), "integrator", render_integrator_name(v), "size",
         (json_int_t)v->size.width, (json_int_t)v->size.height, "threads", (int)sheen_pool_size(run->pool), "seed",
         (json_int_t)v->seed, "options", options_json(run->command->options, run->all_values), "time", time_json(stats),
         "rays", rays_json(s), "records", records_json(stats), "cache_bytes", (json_int_t)s->cache_bytes,
-        "peak_rss_bytes", peak_rss_bytes(), "passes", (json_int_t)s->passes, "spp_done", (json_int_t)s->spp_done,
-        "spp_mean", s->spp_mean, "nonfinite_samples", (json_int_t)s->nonfinite_samples, "frames", frames_json(stats));
+        "peak_rss_bytes", peak_rss_bytes(), "passes", (json_int_t)s->passes, "refined", (json_int_t)s->refined,
+        "spp_done", (json_int_t)s->spp_done, "spp_mean", s->spp_mean, "nonfinite_samples",
+        (json_int_t)s->nonfinite_samples, "frames", frames_json(stats));
     char *text = object ? json_dumps(object, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
     json_decref(object);
     return text;

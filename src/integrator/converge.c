@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrator/converge.h"
 
+#include "base/clock.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -70,10 +72,12 @@ static SheenStatus refine(Rounds *r, SheenStats *stats)
 {
     const Convergence *c = r->c;
     SheenRecordStore *store = adapt_store(&c->cache);
-    if (!c->view) return SHEEN_OK;
+    double start = sheen_clock_seconds();
     SheenStatus status = c->view->direct ? SHEEN_OK : sheen_adapt_look(c->work, stats, c->view);
     if (status == SHEEN_OK) status = sheen_adapt_pass(c->work, c->view, r->touched[1] ? r->touched : NULL, &c->cache);
-    return status == SHEEN_OK ? take_changes(store, store->n, r->touched[0]) : status;
+    if (status == SHEEN_OK) status = take_changes(store, store->n, r->touched[0]);
+    stats->time_refine += sheen_clock_seconds() - start;
+    return status;
 }
 
 static SheenStatus run_round(Rounds *r, SheenStats *stats)
@@ -86,7 +90,7 @@ static SheenStatus run_round(Rounds *r, SheenStats *stats)
     SheenStatus status = sheen_octree_create_alike(store->octree, &r->touched[0]);
     if (status == SHEEN_OK) status = sheen_fill_run(c->work, c->kind, r->points, r->n, stats);
     if (status == SHEEN_OK) status = take_changes(store, first, r->touched[0]);
-    return status == SHEEN_OK ? refine(r, stats) : status;
+    return status == SHEEN_OK && c->view ? refine(r, stats) : status;
 }
 
 SheenStatus sheen_converge(const Convergence *c, const ShadingPoint points[], size_t n, SheenStats *stats)
@@ -99,6 +103,7 @@ SheenStatus sheen_converge(const Convergence *c, const ShadingPoint points[], si
     if (status == SHEEN_OK) memcpy(r.points, points, n * sizeof *points);
     for (unsigned round = 0; round < c->rounds && r.n > 0 && status == SHEEN_OK; ++round) {
         status = run_round(&r, stats);
+        if (c->view && stats->refined <= round) stats->refined = round + 1;
         if (status == SHEEN_OK && round + 1 < c->rounds) status = choose_points(&r);
     }
     for (int i = 0; i < 2; ++i) sheen_octree_destroy(&r.touched[i]);

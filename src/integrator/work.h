@@ -45,11 +45,13 @@ SheenOptions sheen_options_default(void);
 /** Counters and seconds of a render. */
 typedef struct SheenStats {
     double time_visibility, time_fill, time_direct, time_interpolate;
+    double time_refine; // part of time_fill: where to refine records was found out
     uint64_t rays_camera, rays_shadow, rays_gather, rays_path, rays_specular;
     uint64_t records;          // of the caches that the picture reads: of irradiance ...
     uint64_t radiance_records; // ... and of radiance
     uint64_t deep_records;     // of the light beyond the first bounce
     uint64_t cache_bytes;
+    uint64_t refined;  // passes of refinement over the kind of records that took most
     uint32_t passes;   // waves of the fill; passes of `path`
     uint32_t spp_done; // samples of each pixel, at least
     double spp_mean;   // in the mean

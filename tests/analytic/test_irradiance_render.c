@@ -29,8 +29,8 @@ static void assert_same_film(const SheenFilm *a, const SheenFilm *b)
 
 static void assert_same_counters(SheenStats a, SheenStats b)
 {
-    a.time_visibility = a.time_fill = a.time_direct = a.time_interpolate = 0.0;
-    b.time_visibility = b.time_fill = b.time_direct = b.time_interpolate = 0.0;
+    a.time_visibility = a.time_fill = a.time_refine = a.time_direct = a.time_interpolate = 0.0;
+    b.time_visibility = b.time_fill = b.time_refine = b.time_direct = b.time_interpolate = 0.0;
     assert_memory_equal(&a, &b, sizeof a);
 }
 

@@ -63,8 +63,8 @@ static void check_keys(const json_t *stats)
                                         "direct", "interpolate", "write",      "total"};
     static const char *const rays[] = {"camera", "shadow", "gather", "path", "specular"};
     static const char *const records[] = {"irradiance", "radiance", "light_vector", "reused", "new", "deleted"};
-    static const char *const counters[] = {"threads", "seed",     "cache_bytes",      "peak_rss_bytes",
-                                           "passes",  "spp_done", "nonfinite_samples"};
+    static const char *const counters[] = {"threads", "seed",    "cache_bytes", "peak_rss_bytes",
+                                           "passes",  "refined", "spp_done",    "nonfinite_samples"};
     text(stats, "version");
     text(stats, "scene");
     assert_true(json_is_object(json_object_get(stats, "options")));
@@ -78,6 +78,7 @@ static void check_keys(const json_t *stats)
     for (size_t i = 0; i < sizeof times / sizeof *times - 1; ++i) sum += seconds(time, times[i]);
     // The stages do not overlap, so that they are at most the whole.
     assert_true(sum <= seconds(time, "total") + 1e-3);
+    assert_true(seconds(time, "refine") <= seconds(time, "fill"));
     for (size_t i = 0; i < sizeof rays / sizeof *rays; ++i) integer(json_object_get(stats, "rays"), rays[i]);
     for (size_t i = 0; i < sizeof records / sizeof *records; ++i)
         integer(json_object_get(stats, "records"), records[i]);
@@ -105,6 +106,11 @@ static void test_irradiance(void **state)
     assert_true(integer(rays, "camera") >= 24 * 16 * 2);
     assert_true(integer(rays, "gather") >= 32 * integer(records, "irradiance"));
     assert_true(integer(stats, "cache_bytes") > 0);
+    // Records are refined unless that is turned off.
+    assert_true(integer(stats, "refined") > 0 && seconds(json_object_get(stats, "time"), "refine") > 0.0);
+    json_decref(stats);
+    stats = stats_of("--integrator irradiance --spp 2 --adaptive off");
+    assert_true(integer(stats, "refined") == 0 && seconds(json_object_get(stats, "time"), "refine") == 0.0);
     json_decref(stats);
 }
 
