@@ -47,6 +47,14 @@ static float contrast(const Smoothing *s, uint32_t own, uint32_t other)
     return maxf(1.0f, maxf(a, b) / (maxf(minf(a, b), 1e-20f) * (1.0f + sigmas * noise)));
 }
 
+// By how much less far than their radii say the light of two radiance records is alike: refinement told some apart, for
+// it knows lobes and radii do not. The root of what it came to, for some of that was noise. Measured: without this
+// refined floors were no better than before, by the whole of it a rougher picture's noise grows by 3 %.
+static float told_apart(const SheenRecordStore *store, uint32_t own, uint32_t other)
+{
+    return sqrtf(minf(store->records[own].a, store->records[other].a) / store->accuracy);
+}
+
 // @return false where the record stays as it is
 static bool find_teachers(const Smoothing *s, uint32_t own, Teachers *out)
 {
@@ -63,7 +71,8 @@ static bool find_teachers(const Smoothing *s, uint32_t own, Teachers *out)
         if (alike && !(cos_n > SHEEN_SAME_COS)) continue;
         // The reach of irradiance tells how far the light is alike; that of radiance is cut by gradients whose noise is
         // that of all coefficients.
-        float R = s->radiance ? minf(r->R, at->R) : minf(r->R_sure, at->R_sure);
+        float R =
+            s->radiance ? minf(r->R, at->R) * told_apart(s->radiance->store, own, other) : minf(r->R_sure, at->R_sure);
         float w = other == own ? INFINITY : record_weight(R, d2, cos_n);
         float variance = (sqrf(r->error) + sqrf(share_of_bound / w)) * sqrf(contrast(s, own, other));
         if (!(variance > 0.0f)) continue;

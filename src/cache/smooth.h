@@ -21,7 +21,7 @@ SHEEN_NODISCARD SheenStatus sheen_irradiance_cache_smooth(SheenIrradianceCache *
                                                           const atomic_bool *cancel);
 
 /** The same of radiance records, by the mean of what comes in. Hemispherical ones learn from their like alone: those
- *  with the same normal, to half a degree. */
+ *  with the same normal, to half a degree. Those that were refined learn less. */
 SHEEN_NODISCARD SheenStatus sheen_radiance_cache_smooth(SheenRadianceCache *cache, uint32_t first, const Bounds *bounds,
                                                         SheenPool *pool, const atomic_bool *cancel);
 
