@@ -203,7 +203,7 @@ const Option render_options[] = {
      .name = "adaptive",
      .argument = "on|off",
      .meaning = "Make records more accurate, and more of them, until no overlap of their areas shows a difference. "
-                "--accuracy then is where they settle in the mean: between a quarter of it and twice as much.",
+                "--accuracy then is where they begin; none is made finer than a quarter of it.",
      .standard = "on",
      .example = "--adaptive off",
      .choices = cli_on_off,

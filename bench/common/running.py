@@ -85,7 +85,7 @@ def output(command):
 
 
 def render(scene, picture, **options):
-    """sheen render; spp=4 becomes --spp 4. One or several pictures.
+    """sheen render; spp=4 becomes --spp 4, and of a tuple each. One or several pictures.
 
     Pixels are boxes unless another filter is asked for: pictures are compared with those of other programs and of
     other sizes.
@@ -103,8 +103,9 @@ def sheen(name, scene, pictures, **options):
     for path in pictures:
         command += ["-o", path]
     for name, value in options.items():
-        if value is not None:
-            command += ["--" + name.replace("_", "-"), str(value)]
+        for each in value if isinstance(value, tuple) else (value,):
+            if each is not None:
+                command += ["--" + name.replace("_", "-"), str(each)]
     run = measure(command)
     with open(stats, encoding="utf-8") as file:
         run.stats = json.load(file)
