@@ -5,6 +5,7 @@
 
 #include "base/hash.h"
 #include "cache/cache_file.h"
+#include "math/frame.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -57,7 +58,8 @@ static inline Record kit_record(uint32_t i)
                     .a = KIT_ACCURACY * (1.0f - 0.2f * kit_unit(i, 8)),
                     .R_min = R * kit_unit(i, 6),
                     .R_sure = i % 5 ? R : INFINITY, // of a record that sees nothing but sky
-                    .error = kit_unit(i, 7)};
+                    .error = kit_unit(i, 7),
+                    .stretch = record_stretch(frame_from_normal(kit_normal(i)).t, 1.0f + kit_unit(i, 9))};
 }
 
 static inline SheenIrradianceCache *kit_irradiance(void)

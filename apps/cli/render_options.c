@@ -30,6 +30,11 @@ static const Choice secondaries[] = {
     {"path", SHEEN_SECONDARY_PATH},
     {0},
 };
+static const Choice error_metrics[] = {
+    {"split-sphere", SHEEN_ERROR_SPLIT_SPHERE},
+    {"hessian", SHEEN_ERROR_HESSIAN},
+    {0},
+};
 static const Choice filters[] = {
     {"scene", SHEEN_FILTER_UNSET},       {"box", SHEEN_FILTER_BOX},
     {"tent", SHEEN_FILTER_TENT},         {"gaussian", SHEEN_FILTER_GAUSSIAN},
@@ -155,6 +160,38 @@ const Option render_options[] = {
      .of_records = true,
      RANGE(0.01, 1.0),
      FIELD(accuracy)},
+    {.kind = OPTION_CHOICE,
+     .name = "error-metric",
+     .argument = "split-sphere|hessian",
+     .meaning = "What sets how far a record of irradiance may be used. hessian: how its light bends, occlusion "
+                "included, in ellipses. split-sphere: the distances of what is around.",
+     .standard = "hessian",
+     .example = "--error-metric split-sphere",
+     .choices = error_metrics,
+     .recorded = true,
+     .of_records = true,
+     FIELD(error_metric)},
+    {.kind = OPTION_NUMBER,
+     .name = "reach-min",
+     .argument = "PIXELS",
+     .meaning = "The least distance that a record is used over: finer detail of indirect light is lost.",
+     .standard = "4.0",
+     .example = "--reach-min 2",
+     .recorded = true,
+     .of_records = true,
+     RANGE(0.5, 1000.0),
+     FIELD(reach_min)},
+    {.kind = OPTION_NUMBER,
+     .name = "reach-max",
+     .argument = "PIXELS",
+     .meaning = "The largest distance that a record is used over, where light is even. The farther, the fewer records, "
+                "and the wider the discs that their noise is seen in.",
+     .standard = "25.0",
+     .example = "--reach-max 50",
+     .recorded = true,
+     .of_records = true,
+     RANGE(0.5, 1000.0),
+     FIELD(reach_max)},
     {.kind = OPTION_COUNT,
      .name = "gather-rays",
      .argument = "N",
@@ -307,7 +344,6 @@ const Option render_options[] = {
      .meaning = "Say more on standard error: what was loaded, and what took how long.",
      .example = "--verbose",
      FIELD(verbose)},
-    {.kind = OPTION_LATER, .name = "error-metric"},
     {0},
 };
 
@@ -319,6 +355,9 @@ RenderValues render_values_default(void)
         .light_samples = o.light_samples,
         .bounces = o.bounces,
         .noise = cli_decimal(o.noise),
+        .error_metric = (int)o.error_metric,
+        .reach_min = cli_decimal(o.reach_min),
+        .reach_max = cli_decimal(o.reach_max),
         .accuracy = cli_decimal(o.accuracy),
         .gather_rays = o.gather_rays,
         .gradients = (int)o.gradients,
@@ -337,6 +376,10 @@ RenderValues render_values_default(void)
 bool render_values_check(const Command *command, const RenderValues *values)
 {
     if (!scene_values_check(command, &values->scene)) return false;
+    if (values->reach_min > values->reach_max) {
+        cli_usage_error(command, "--reach-min: more than --reach-max");
+        return false;
+    }
     if ((uint64_t)values->size.width * values->size.height <= SHEEN_IMAGE_MAX_PIXELS) return true;
     cli_usage_error(command, "--size: a picture has at most %llu pixels", (unsigned long long)SHEEN_IMAGE_MAX_PIXELS);
     return false;
@@ -357,6 +400,9 @@ SheenRenderSettings render_values_settings(RenderValues *values, const SheenCame
     o.bounces = values->bounces;
     o.time_limit = values->time_limit;
     o.noise = (float)values->noise;
+    o.error_metric = (SheenErrorMetric)values->error_metric;
+    o.reach_min = (float)values->reach_min;
+    o.reach_max = (float)values->reach_max;
     o.accuracy = (float)values->accuracy;
     o.gather_rays = values->gather_rays;
     o.gradients = (SheenGradient)values->gradients;

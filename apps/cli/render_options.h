@@ -23,6 +23,8 @@ typedef struct RenderValues {
     uint32_t spp, light_samples, bounces;
     double time_limit; // of `sheen render` alone
     double noise;
+    int error_metric;
+    double reach_min, reach_max;
     double accuracy;
     uint32_t gather_rays;
     int gradients, basis, secondary; // SheenGradient, SheenBasisChoice, SheenSecondary

@@ -124,7 +124,8 @@ static SheenStatus read_record(const Decoder *d, SheenCachePartKind kind, const 
                   .R_min = head[7],
                   .R_sure = head[8],
                   .error = head[9],
-                  .a = head[10]};
+                  .a = head[10],
+                  .stretch = v3(head[11], head[12], head[13])};
     if (!cache_record_is_sound(r) || !cache_light_is_sound(light, part->light_floats))
         return refuse(d, "%s record %u has numbers that no record can have", part_names[kind], part->n);
     ++part->n;

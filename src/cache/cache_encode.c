@@ -61,8 +61,9 @@ static void copy_light(const Source *s, uint32_t record, float out[])
 static bool copy_row(const Source *s, uint32_t record, float out[])
 {
     const Record *r = &s->store->records[record];
-    const float head[CACHE_RECORD_FLOATS] = {r->p.x, r->p.y,   r->p.z,    r->n.x,   r->n.y, r->n.z,
-                                             r->R,   r->R_min, r->R_sure, r->error, r->a};
+    const float head[CACHE_RECORD_FLOATS] = {r->p.x, r->p.y,       r->p.z,       r->n.x,      r->n.y,
+                                             r->n.z, r->R,         r->R_min,     r->R_sure,   r->error,
+                                             r->a,   r->stretch.x, r->stretch.y, r->stretch.z};
     memcpy(out, head, sizeof head);
     copy_light(s, record, out + CACHE_RECORD_FLOATS);
     return cache_record_is_sound(r) && cache_light_is_sound(out + CACHE_RECORD_FLOATS, s->light_floats);

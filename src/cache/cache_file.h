@@ -11,7 +11,7 @@
 #include <stddef.h>
 
 /** Version of the layout; a file of another is refused. */
-enum { SHEEN_CACHE_FILE_VERSION = 3 };
+enum { SHEEN_CACHE_FILE_VERSION = 4 };
 
 /** What a file is made from; all is borrowed. */
 typedef struct SheenCacheContents {

@@ -18,7 +18,7 @@ enum {
     CACHE_ABOUT_MAX = 1 << 20,  // bytes
     CACHE_BLOCK_BYTES = 1 << 16 // of a block before compression, or those of one record where it has more
 };
-enum { CACHE_RECORD_FLOATS = 11 }; // p, n, R, R_min, R_sure, error, a; the light follows
+enum { CACHE_RECORD_FLOATS = 14 }; // p, n, R, R_min, R_sure, error, a, stretch; the light follows
 enum { CACHE_FLAG_NEIGHBOR_CLAMPING = 1, CACHE_FLAGS = 1 };
 
 /** Bytes of a record with its light. */
@@ -45,7 +45,7 @@ static inline bool cache_record_is_sound(const Record *r)
     float length2 = v3_length2(r->n);
     return v3_finite(r->p) && length2 > 0.99f && length2 < 1.01f && isfinite(r->R) && r->R >= 0.0f &&
            isfinite(r->R_min) && r->R_min >= 0.0f && r->R_sure >= 0.0f && r->error >= 0.0f && r->a > 0.0f &&
-           r->a <= 1.0f;
+           r->a <= 1.0f && v3_length2(r->stretch) < 1.0f;
 }
 
 static inline bool cache_light_is_sound(const float light[], size_t n)

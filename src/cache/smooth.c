@@ -67,7 +67,7 @@ static bool find_teachers(const Smoothing *s, uint32_t own, Teachers *out)
     for (unsigned i = 0; i < near.n; ++i) {
         uint32_t other = near.record[i];
         const Record *r = &s->wide->records[other];
-        float d2 = v3_length2(v3_sub(at->p, r->p)), cos_n = v3_dot(at->n, r->n);
+        float d2 = record_distance2(r, at->p), cos_n = v3_dot(at->n, r->n);
         if (alike && !(cos_n > SHEEN_SAME_COS)) continue;
         // The reach of irradiance tells how far the light is alike; that of radiance is cut by gradients whose noise is
         // that of all coefficients.

@@ -53,7 +53,7 @@ static void clamp_record(Clamp *c, uint32_t record)
 
 // Visits all entries of the nodes near p. The first pass looks for records nearer than R: others bound nothing. The
 // second looks for records whose own R is more than their distance; below the root these have at most half a node's
-// side as reach a R. A record may be met more than once: both passes are idempotent.
+// side as reach, which is a R or more. A record may be met more than once: both passes are idempotent.
 static void clamp_visit(Clamp *c, uint32_t node, Vec3 lo, float side)
 {
     const SheenOctree *t = c->store->octree;
@@ -89,7 +89,7 @@ static void shrink_neighbors(SheenRecordStore *store, const Record *r)
 
 static SheenStatus index_record(SheenOctree *tree, const Record *r, uint32_t number)
 {
-    return sheen_octree_insert(tree, r->p, r->a * r->R, number);
+    return sheen_octree_insert(tree, r->p, record_reach(r), number);
 }
 
 SheenStatus sheen_store_append(SheenRecordStore *s, const Record *record)
@@ -176,12 +176,12 @@ typedef struct Query {
     float slack, most;
 } Query;
 
-// Takes a record when it serves the point. @param d2  squared distance, below the square of the record's reach
-static void consider(const SheenRecordStore *s, uint32_t record, float d2, const Query *q, Contributors *out)
+// Takes a record when it serves the point.
+static void consider(const SheenRecordStore *s, uint32_t record, const Query *q, Contributors *out)
 {
     const Record *r = &s->records[record];
     unsigned cover;
-    float cos_n = v3_dot(q->n, r->n), w = influence(r, q->most, d2, cos_n, &cover);
+    float cos_n = v3_dot(q->n, r->n), w = influence(r, q->most, record_distance2(r, q->p), cos_n, &cover);
     if (!(w > 0.0f) || cos_n < s->cos_min || record_in_front(r, q->p, q->n, q->slack)) return;
     add_contributor(record, minf(w, weight_max), out);
     out->cover += cover;
@@ -195,7 +195,7 @@ static void consider_block(const SheenRecordStore *s, const OctreeBlock *b, cons
     for (unsigned lanes = octree_block_holding(b, d2); lanes != 0;) {
         unsigned lane = 31u - (unsigned)__builtin_clz(lanes);
         lanes ^= 1u << lane;
-        consider(s, b->record[lane], d2[lane], q, out);
+        consider(s, b->record[lane], q, out);
     }
 }
 

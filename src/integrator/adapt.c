@@ -131,7 +131,7 @@ static void pass_point(const Pass *s, const ShadingPoint *p, const GlossyPoint *
     Contributors c;
     AdaptShare share[SHEEN_CONTRIBUTORS_MAX];
     if (!is_touched(s->touched, p->point.p)) return;
-    sheen_store_find_near(s->store, p->point.p, p->point.n, record_most_enlarged(p->footprint), &c);
+    sheen_store_find_near(s->store, p->point.p, p->point.n, record_most_enlarged(o, p->footprint), &c);
     if (c.n < 2) return;
     for (unsigned i = 0; i < c.n; ++i) {
         const Record *r = &s->store->records[c.record[i]];

@@ -235,7 +235,7 @@ static SheenStatus shade(SheenCached *c, const SheenWork *work, SheenCaches *own
         if (!own->irradiance) status = sheen_caches_create(work, own);
         const Target to = {own, &c->caches, 1, false};
         if (status == SHEEN_OK) status = fill(c, work, &to, &uncovered, stats);
-        if (status == SHEEN_OK) sheen_shade_uncovered(&caches, &uncovered, picture, stats);
+        if (status == SHEEN_OK) sheen_shade_uncovered(&work->options, &caches, &uncovered, picture, stats);
     }
     sheen_seen_free(&uncovered);
     return status;

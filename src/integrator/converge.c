@@ -22,7 +22,7 @@ static SheenStatus take_changes(SheenRecordStore *store, uint32_t first, SheenOc
         for (uint32_t k = 0; k < t->blocks[b].n; ++k) reach2[t->blocks[b].record[k]] = t->blocks[b].reach2[k];
     for (uint32_t i = 0; i < store->n && status == SHEEN_OK; ++i) {
         const Record *r = &store->records[i];
-        if (i < first && !(sqrf(r->a * r->R) < reach2[i])) continue;
+        if (i < first && !(sqrf(record_reach(r)) < reach2[i])) continue;
         changed = true;
         status = sheen_octree_insert(spheres, r->p, sqrtf(reach2[i]), i);
     }

@@ -30,16 +30,17 @@ typedef struct Waves {
 
 /** Asks whether all points are covered. */
 typedef struct Question {
+    const SheenOptions *options;
     const SheenRecordStore *store;
     const ShadingPoint *points; // [n]
     size_t n;
     atomic_bool open;
 } Question;
 
-static bool is_covered(const SheenRecordStore *store, const ShadingPoint *p)
+static bool is_covered(const SheenOptions *o, const SheenRecordStore *store, const ShadingPoint *p)
 {
     Contributors c;
-    sheen_store_find_near(store, p->point.p, p->point.n, record_most_enlarged(p->footprint), &c);
+    sheen_store_find_near(store, p->point.p, p->point.n, record_most_enlarged(o, p->footprint), &c);
     return c.cover > 1;
 }
 
@@ -49,13 +50,13 @@ static void question_task(void *user, size_t item, unsigned worker)
     Question *q = user;
     size_t end = (item + 1) * COVER_BLOCK < q->n ? (item + 1) * COVER_BLOCK : q->n;
     for (size_t i = item * COVER_BLOCK; i < end && !atomic_load_explicit(&q->open, memory_order_relaxed); ++i)
-        if (!is_covered(q->store, &q->points[i])) atomic_store(&q->open, true);
+        if (!is_covered(q->options, q->store, &q->points[i])) atomic_store(&q->open, true);
 }
 
 SheenStatus sheen_fill_is_open(const SheenWork *work, const SheenRecordStore *store, const ShadingPoint points[],
                                size_t n, bool *open)
 {
-    Question q = {store, points, n, false};
+    Question q = {&work->options, store, points, n, false};
     *open = false;
     if (!sheen_pool_run(work->pool, (n + COVER_BLOCK - 1) / COVER_BLOCK, question_task, &q, work->cancel))
         return SHEEN_ERR_CANCELLED;
@@ -67,15 +68,16 @@ static void cover_task(void *user, size_t item, unsigned worker)
 {
     (void)worker;
     Waves *w = user;
+    const SheenOptions *o = &w->work->options;
     size_t end = (item + 1) * COVER_BLOCK < w->n_open ? (item + 1) * COVER_BLOCK : w->n_open;
     for (size_t i = item * COVER_BLOCK; i < end; ++i) {
         const ShadingPoint *p = &w->points[w->open[i]];
-        w->covered[i] = w->made_at[w->open[i]] || is_covered(w->kind->store, p);
+        w->covered[i] = w->made_at[w->open[i]] || is_covered(o, w->kind->store, p);
         if (w->covered[i]) continue;
-        float most = SHEEN_REACH_MAX_PX * p->footprint;
+        float most = o->reach_max * p->footprint;
         RecordExpected e = sheen_store_expect(w->kind->store, p->point.p);
-        w->spacing[i] = isinf(e.reach) ? 0.5f * most : clampf(e.reach, SHEEN_REACH_MIN_PX * p->footprint, most);
-        w->a[w->open[i]] = record_first_accuracy(&w->work->options, e.a);
+        w->spacing[i] = isinf(e.reach) ? 0.5f * most : clampf(e.reach, o->reach_min * p->footprint, most);
+        w->a[w->open[i]] = record_first_accuracy(o, e.a);
     }
 }
 
@@ -121,8 +123,8 @@ static SheenStatus choose(Waves *w)
         w->spacing[kept++] = w->spacing[i];
     }
     w->n_open = kept;
-    return sheen_thin(SHEEN_REACH_MAX_PX, w->work->width, w->points, w->n_open, w->open, w->spacing, w->a, w->accepted,
-                      &w->n_accepted);
+    return sheen_thin(w->work->options.reach_max, w->work->width, w->points, w->n_open, w->open, w->spacing, w->a,
+                      w->accepted, &w->n_accepted);
 }
 
 static SheenStatus insert_wave(Waves *w)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrator/irradiance_record.h"
 
+#include "gather/hessian.h"
 #include "integrator/gather_light.h"
 #include "integrator/record_radius.h"
 
@@ -32,21 +33,36 @@ void sheen_irradiance_maker_destroy(SheenIrradianceMaker **maker)
     *maker = NULL;
 }
 
+// @return the record's own radius, across
+static float set_radius(const SheenOptions *o, float footprint, const Hemisphere *h, const IrradianceEstimate *e,
+                        Record *r)
+{
+    if (o->error_metric == SHEEN_ERROR_SPLIT_SPHERE) {
+        float R = o->gradient_clamping ? estimate_gradient_radius(e) : e->R;
+        record_set_radius(o, footprint, R, r);
+        return R;
+    }
+    IrradianceHessian bends;
+    sheen_estimate_hessian(h->strata, h->directions, h->L, h->distance, &bends, NULL);
+    HessianEllipse ellipse = sheen_hessian_ellipse(&bends, rgb_luminance(e->E), SHEEN_HESSIAN_ERROR);
+    record_set_ellipse(o, footprint, &h->frame, &ellipse, r);
+    return ellipse.radius[0];
+}
+
 static void make(const void *maker, const ShadingPoint *p, float a, uint32_t key, unsigned worker, SheenStats *stats,
                  Record *record, void *out)
 {
     const SheenIrradianceMaker *m = maker;
     const SheenOptions *o = &m->gatherer.work->options;
     IrradianceLight *light = out;
-    float R_min = record_least_radius(a, p->footprint);
+    float R_min = record_least_radius(o, a, p->footprint);
     DiffusePoint at = p->point;
     at.bent = at.n; // whatever a map makes of the surface there
     const Hemisphere *h = sheen_gather_light(&m->gatherer, &at, R_min, key, worker, stats);
     IrradianceEstimate e;
     sheen_estimate_irradiance(h->strata, h->L, h->distance, &e);
     *record = (Record){.p = p->point.p, .n = p->point.n, .a = a, .error = h->error};
-    float R = o->gradient_clamping ? estimate_gradient_radius(&e) : e.R;
-    record_set_radius(p->footprint, R, record);
+    float R = set_radius(o, p->footprint, h, &e, record);
     estimate_enlarge(R, record->R_min, &e);
     BehindEstimate behind;
     sheen_estimate_behind(h->strata, h->L, &behind);

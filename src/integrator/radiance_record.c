@@ -92,7 +92,7 @@ static void make(const void *maker, const ShadingPoint *p, float a, uint32_t key
     const SheenRadianceMaker *m = maker;
     const SheenOptions *o = &m->gatherer.work->options;
     const SheenRadianceCache *cache = m->like;
-    float R_min = record_least_radius(a, p->footprint);
+    float R_min = record_least_radius(o, a, p->footprint);
     const Hemisphere *h = sheen_gather_light(&m->gatherer, &p->point, R_min, key, worker, stats);
     float *light = out;
     memset(light, 0, radiance_light_floats(cache) * sizeof *light);
@@ -104,7 +104,7 @@ static void make(const void *maker, const ShadingPoint *p, float a, uint32_t key
     size_t n = basis_size(cache->order);
     *record = (Record){.p = p->point.p, .n = p->point.n, .a = a, .error = relative_error(cache->order, &e)};
     float R = o->gradient_clamping ? gradient_radius(n, &e) : e.R;
-    record_set_radius(p->footprint, R, record);
+    record_set_radius(o, p->footprint, R, record);
     float scale = estimate_gradient_share(R, record->R_min);
     for (size_t i = 0; i < 2 * cache->stride; ++i) light[cache->stride + i] *= scale;
     if (cache->basis == SHEEN_BASIS_HSH) return;

@@ -138,7 +138,7 @@ static float expected_error(const SheenRecordStore *store, const ShadingPoint *p
     float sum = 0.0f;
     for (unsigned i = 0; i < c->n; ++i) {
         const Record *r = &store->records[c->record[i]];
-        float w = record_weight(r->R_sure, v3_length2(v3_sub(p->point.p, r->p)), v3_dot(p->point.n, r->n));
+        float w = record_weight(r->R_sure, record_distance2(r, p->point.p), v3_dot(p->point.n, r->n));
         sum += c->weight[i] * (sqrf(share * minf(1.0f / w, 1.0f)) + sqrf(r->error));
     }
     return sqrtf(sum / c->weight_sum);
@@ -167,12 +167,12 @@ static void add_cache_layers(const SheenRecordStore *store, const ShadingPoint *
 }
 
 // @param cache  may be NULL @return false where its records say nothing
-static bool indirect_diffuse(const SheenIrradianceCache *cache, const ShadingPoint *p, Picture *picture,
-                             SheenStats *stats)
+static bool indirect_diffuse(const SheenOptions *o, const SheenIrradianceCache *cache, const ShadingPoint *p,
+                             Picture *picture, SheenStats *stats)
 {
     Contributors c;
     if (!cache) return false;
-    sheen_store_find_near(cache->store, p->point.p, p->point.n, record_most_enlarged(p->footprint), &c);
+    sheen_store_find_near(cache->store, p->point.p, p->point.n, record_most_enlarged(o, p->footprint), &c);
     if (c.n == 0) return false;
     Rgb E = sheen_irradiance_interpolate_bent(cache->store, cache->light, &c, p->point.p, p->point.n, p->point.bent);
     add_reflected(p, E, SHEEN_AOV_INDIRECT, picture, stats);
@@ -181,13 +181,13 @@ static bool indirect_diffuse(const SheenIrradianceCache *cache, const ShadingPoi
 }
 
 // @param cache  may be NULL @return false where its records say nothing
-static bool indirect_glossy(const SheenRadianceCache *cache, const GlossyPoint *g, const Rgb lobes[], Picture *picture,
-                            SheenStats *stats)
+static bool indirect_glossy(const SheenOptions *o, const SheenRadianceCache *cache, const GlossyPoint *g,
+                            const Rgb lobes[], Picture *picture, SheenStats *stats)
 {
     const ShadingPoint *p = &g->at;
     Contributors c;
     if (!cache) return false;
-    sheen_store_find_near(cache->store, p->point.p, p->point.n, record_most_enlarged(p->footprint), &c);
+    sheen_store_find_near(cache->store, p->point.p, p->point.n, record_most_enlarged(o, p->footprint), &c);
     if (c.n == 0) return false;
     RadianceLobe lobe = {g->order, lobes + g->lobe};
     Rgb L = sheen_radiance_reflect(cache, &c, p->point.p, p->point.n, &lobe);
@@ -198,20 +198,20 @@ static bool indirect_glossy(const SheenRadianceCache *cache, const GlossyPoint *
 
 // Adds the indirect light of points. @param uncovered  gets those without a record; NULL: they are left out
 // @return false when out of memory
-static bool indirect_light(const PictureCaches *caches, const SeenPoints *seen, Picture *picture, SeenPoints *uncovered,
-                           SheenStats *stats)
+static bool indirect_light(const SheenOptions *o, const PictureCaches *caches, const SeenPoints *seen, Picture *picture,
+                           SeenPoints *uncovered, SheenStats *stats)
 {
     const SheenCaches *kept = caches->kept, *own = caches->own;
     for (size_t i = 0; i < seen->n_points; ++i) {
         const ShadingPoint *p = &seen->points[i];
-        bool covered = indirect_diffuse(kept->irradiance, p, picture, stats) ||
-                       indirect_diffuse(own->irradiance, p, picture, stats);
+        bool covered = indirect_diffuse(o, kept->irradiance, p, picture, stats) ||
+                       indirect_diffuse(o, own->irradiance, p, picture, stats);
         if (!covered && uncovered && !sheen_seen_add(p, 1, uncovered)) return false;
     }
     for (size_t i = 0; i < seen->n_glossy; ++i) {
         const GlossyPoint *g = &seen->glossy[i];
-        bool covered = indirect_glossy(kept->radiance[g->basis], g, seen->lobes, picture, stats) ||
-                       indirect_glossy(own->radiance[g->basis], g, seen->lobes, picture, stats);
+        bool covered = indirect_glossy(o, kept->radiance[g->basis], g, seen->lobes, picture, stats) ||
+                       indirect_glossy(o, own->radiance[g->basis], g, seen->lobes, picture, stats);
         if (covered || !uncovered) continue;
         if (!sheen_seen_add_glossy(&g->at, g->basis, g->order, seen->lobes + g->lobe, uncovered)) return false;
     }
@@ -226,7 +226,8 @@ static bool shade_range(const ShadeTask *t, const Tile *tile, SampleRange range,
     double t1 = sheen_clock_seconds();
     if (!direct_light(t->work, s, t->picture)) return false;
     double t2 = sheen_clock_seconds();
-    if (t->caches && !indirect_light(t->caches, &s->visibility.seen, t->picture, uncovered, &s->stats)) return false;
+    const SheenOptions *o = &t->work->options;
+    if (t->caches && !indirect_light(o, t->caches, &s->visibility.seen, t->picture, uncovered, &s->stats)) return false;
     double t3 = sheen_clock_seconds();
     s->visibility_seconds += t1 - t0;
     s->direct_seconds += t2 - t1;
@@ -290,8 +291,8 @@ SheenStatus sheen_shade(const SheenWork *work, const PictureCaches *caches, uint
     return status;
 }
 
-void sheen_shade_uncovered(const PictureCaches *caches, const SeenPoints *uncovered, Picture *picture,
-                           SheenStats *stats)
+void sheen_shade_uncovered(const SheenOptions *o, const PictureCaches *caches, const SeenPoints *uncovered,
+                           Picture *picture, SheenStats *stats)
 {
-    indirect_light(caches, uncovered, picture, NULL, stats);
+    indirect_light(o, caches, uncovered, picture, NULL, stats);
 }

@@ -22,7 +22,7 @@ SHEEN_NODISCARD SheenStatus sheen_shade(const SheenWork *work, const PictureCach
                                         Picture *picture, SeenPoints *uncovered, SheenStats *stats);
 
 /** Adds the indirect light of points that have records by now. */
-void sheen_shade_uncovered(const PictureCaches *caches, const SeenPoints *uncovered, Picture *picture,
-                           SheenStats *stats);
+void sheen_shade_uncovered(const SheenOptions *o, const PictureCaches *caches, const SeenPoints *uncovered,
+                           Picture *picture, SheenStats *stats);
 
 #endif

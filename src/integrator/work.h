@@ -17,17 +17,23 @@
 
 typedef enum SheenSecondary { SHEEN_SECONDARY_CACHE, SHEEN_SECONDARY_PATH } SheenSecondary;
 
+/** What sets the radius of a record: distances of what is around, or second derivatives of its light. */
+typedef enum SheenErrorMetric { SHEEN_ERROR_SPLIT_SPHERE, SHEEN_ERROR_HESSIAN } SheenErrorMetric;
+
 /** In which basis radiance records are: by the surface, or all in one. */
 typedef enum SheenBasisChoice { SHEEN_BASIS_AUTO, SHEEN_BASIS_ALL_HSH, SHEEN_BASIS_ALL_SH } SheenBasisChoice;
 
 /** Options of a render; sheen_options_default gives the documented defaults. */
 typedef struct SheenOptions {
-    uint32_t spp;            // samples per pixel
-    uint32_t light_samples;  // for each shading point; 0: 1 of one light, 2 of each of up to 4, else 4; 1 for `path`
-    float noise;             // relative standard error that a pixel gets more samples for; not of `path`; 0: never
-    uint32_t bounces;        // indirect bounces; 0 is direct light only
-    double time_limit;       // seconds, path only; 0 for none
-    float accuracy;          // a: a record is used where w > 1/a
+    uint32_t spp;           // samples per pixel
+    uint32_t light_samples; // for each shading point; 0: 1 of one light, 2 of each of up to 4, else 4; 1 for `path`
+    float noise;            // relative standard error that a pixel gets more samples for; not of `path`; 0: never
+    uint32_t bounces;       // indirect bounces; 0 is direct light only
+    double time_limit;      // seconds, path only; 0 for none
+    float accuracy;         // a: a record is used where w > 1/a
+    SheenErrorMetric error_metric;
+    float reach_min;         // how far a record reaches on a plane, pixels: at least ...
+    float reach_max;         // ... and at most; not less than reach_min
     uint32_t gather_rays;    // rays for each record
     SheenGradient gradients; // of irradiance stratified ones or none
     SheenBasisChoice basis;

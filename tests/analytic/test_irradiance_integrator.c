@@ -21,6 +21,7 @@ static void furnace(float rho, uint32_t bounces, SheenSecondary secondary)
     Stage stage = stage_end(b, 2);
     SheenRenderSettings s = small_settings(bounces);
     s.options.secondary = secondary;
+    s.options.gather_rays = 512;
     double expected = 0.0, power = 1.0;
     for (uint32_t k = 0; k <= bounces + 1; ++k, power *= (double)rho) expected += power;
     SheenFilm *film = stage_render(&stage, &s, NULL);
@@ -30,10 +31,11 @@ static void furnace(float rho, uint32_t bounces, SheenSecondary secondary)
             worst = fmax(worst, fabs(film_mean_of(film, x, y, x + 8, y + 8) / expected - 1.0));
     show("furnace %g, %u bounces, %d: mean off by %.2g, worst block %.2g\n", (double)rho, bounces, secondary,
          mean / expected - 1.0, worst);
-    // The light sample of a box's pixel deviates by a third; 4,096 of them make 0.5 %, and 256 of a block 2 %. Deep
-    // light that is lost anywhere adds up over the bounces.
-    assert_true(fabs(mean / expected - 1.0) < 0.006);
-    assert_true(worst < 0.05);
+    // The light sample of a box's pixel deviates by a third; 4,096 of them make 0.5 %, and 256 of a block 2 %; that of
+    // a gather's ray too, which makes 1.5 % of a record, of which there are dozens. Deep light that is lost anywhere
+    // adds up over the bounces.
+    assert_true(fabs(mean / expected - 1.0) < 0.005);
+    assert_true(worst < 0.04);
     sheen_film_destroy(&film);
     stage_free(&stage);
 }

@@ -50,8 +50,12 @@ for size in '' 10 10x x10 0x10 10x0 10x10x10 -1x10 10x-1 '10 x 10' 1e1x10 65537x
     refused --size "${R[@]}" "--size=$size"
 done
 
+refused --reach-min "${R[@]}" --reach-min 0.4
+refused --reach-min "${R[@]}" --reach-min 9 --reach-max 8
+refused --reach-max "${R[@]}" --reach-max 1001
+
 # Names.
-for option in --integrator --gradients --basis --secondary --adaptive --neighbor-clamping --gradient-clamping --progress --aov; do
+for option in --integrator --error-metric --gradients --basis --secondary --adaptive --neighbor-clamping --gradient-clamping --progress --aov; do
     refused "$option" "${R[@]}" "$option" nosuch
     refused "$option" "${R[@]}" "$option="
     refused "$option" "${R[@]}" "$option"
@@ -62,10 +66,8 @@ refused --aov "${R[@]}" --aov depth,,normal
 refused --time-limit "${R[@]}" --time-limit 1
 
 # Options and values of later versions say so.
-for option in error-metric frame; do
-    refused "--$option" "${R[@]}" "--$option" 1
-    grep -q 'not in this version' err || fail "--$option does not say that it is not in this version"
-done
+refused --frame "${R[@]}" --frame 1
+grep -q 'not in this version' err || fail "--frame does not say that it is not in this version"
 for value in integrator=light-vectors; do
     refused "--${value%%=*}" "${R[@]}" "--$value"
     grep -q 'not in this version' err || fail "--$value does not say that it is not in this version"

@@ -94,11 +94,11 @@ static void test_other_versions(void **state)
 {
     (void)state;
     KitBytes b = small();
-    static const uint32_t versions[] = {0, 2, 4, 17, UINT32_MAX};
+    static const uint32_t versions[] = {0, 2, 3, 5, 17, UINT32_MAX};
     for (size_t i = 0; i < sizeof versions / sizeof *versions; ++i) {
         put_u32(b.data + VERSION, versions[i]);
         seal(b);
-        assert_int_equal(refused(b.data, b.size, "this program reads version 3"), SHEEN_ERR_UNSUPPORTED);
+        assert_int_equal(refused(b.data, b.size, "this program reads version 4"), SHEEN_ERR_UNSUPPORTED);
     }
     free(b.data);
 }
@@ -189,13 +189,13 @@ static void test_wrong_radiance_headers(void **state)
 }
 
 // A file of one irradiance record with these numbers.
-static KitBytes file_of(const float row[38])
+static KitBytes file_of(const float row[41])
 {
     KitCaches made = kit_caches(0, 0, 0);
     made.contents.radiance[0] = made.contents.radiance[1] = NULL;
     KitBytes b = kit_encode(&made.contents);
-    uint8_t bytes[4 * 38], packed[1000];
-    for (size_t i = 0; i < 38; ++i) put_f32(bytes + 4 * i, row[i]);
+    uint8_t bytes[4 * 41], packed[1000];
+    for (size_t i = 0; i < 41; ++i) put_f32(bytes + 4 * i, row[i]);
     size_t n = ZSTD_compress(packed, sizeof packed, bytes, sizeof bytes, 1);
     assert_false(ZSTD_isError(n));
     put_u32(b.data + first_part(b) + COUNT, 1);
@@ -212,12 +212,13 @@ static KitBytes file_of(const float row[38])
 static void test_wrong_records(void **state)
 {
     (void)state;
-    const float good[38] = {0, 0, 0, 0, 0, 1, 1, 0.5f, 1, 0.5f, 0.15f, 3, 3, 3};
+    const float good[41] = {0, 0, 0, 0, 0, 1, 1, 0.5f, 1, 0.5f, 0.15f, 0.5f, 0, 0, 3, 3, 3};
     static const struct {
         size_t at;
         float value;
-    } cases[] = {{0, NAN}, {2, INFINITY}, {3, 1},  {3, NAN}, {6, -1},   {6, NAN},  {6, INFINITY},  {7, INFINITY},
-                 {8, NAN}, {9, -1},       {10, 0}, {10, 2},  {10, NAN}, {31, NAN}, {37, -INFINITY}};
+    } cases[] = {{0, NAN},      {2, INFINITY}, {3, 1},    {3, NAN},  {6, -1},        {6, NAN},
+                 {6, INFINITY}, {7, INFINITY}, {8, NAN},  {9, -1},   {10, 0},        {10, 2},
+                 {10, NAN},     {11, 1},       {12, NAN}, {34, NAN}, {40, -INFINITY}};
     KitBytes b = file_of(good); // the file is right but for what follows
     SheenCacheFile *file = kit_decode(b);
     assert_int_equal(file->parts[SHEEN_CACHE_PART_IRRADIANCE].n, 1);
@@ -225,7 +226,7 @@ static void test_wrong_records(void **state)
     sheen_cache_file_destroy(&file);
     free(b.data);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
-        float row[38];
+        float row[41];
         memcpy(row, good, sizeof row);
         row[cases[i].at] = cases[i].value;
         b = file_of(row);

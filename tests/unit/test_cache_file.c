@@ -226,7 +226,7 @@ static void test_layout(void **state)
     KitBytes b = kit_encode(&made.contents);
     static const uint8_t head[] = {
         0x89, 'S',  'H',  'C',  '\r', '\n', 0x1a, '\n',                                    // what it is
-        3,    0,    0,    0,    2,    0,    0,    0,                                       // version, parts
+        4,    0,    0,    0,    2,    0,    0,    0,                                       // version, parts
         0,    0,    0,    0,    0,    0,    0,    0,                                       // bytes, set below
         0xef, 0xcd, 0xab, 0x89, 0x67, 0x45, 0x23, 0x01,                                    // scene
         7,    0,    0,    0,    0,    0,    0,    0,    '{', '"', 'a', '"', ':', '1', '}', // description

@@ -159,9 +159,44 @@ static void test_enlarged_records_give_way(void **state)
     sheen_store_destroy(&s);
 }
 
+// The ellipse's own equation, of a point in the plane of the record.
+static bool in_ellipse(float x, float y, float angle, float along, float across)
+{
+    float u = x * cosf(angle) + y * sinf(angle), v = y * cosf(angle) - x * sinf(angle);
+    return sqrf(u / along) + sqrf(v / across) < 1.0f;
+}
+
+// A stretched record serves an ellipse: of reach a R across and a R times its elongation along.
+static void test_ellipse(void **state)
+{
+    (void)state;
+    for (uint32_t turn = 0; turn < 8; ++turn) {
+        const float angle = 0.4f * (float)turn, aspect = 1.0f + 0.14f * (float)turn;
+        SheenRecordStore *s = store_begin();
+        Record r = {.n = v3(0, 0, 1), .R = 2.0f, .a = 0.2f, .R_min = 0.1f, .R_sure = 2.0f};
+        r.stretch = record_stretch(v3(cosf(angle), sinf(angle), 0.0f), aspect);
+        assert_true(fabsf(record_elongation(&r) - aspect) < 1e-5f);
+        assert_true(fabsf(record_reach(&r) - 0.4f * aspect) < 1e-5f);
+        assert_int_equal(sheen_store_append(s, &r), SHEEN_OK);
+        unsigned inside = 0;
+        for (uint32_t i = 0; i < POINTS; ++i) {
+            float x = 2.0f * random_unit(i, 20) - 1.0f, y = 2.0f * random_unit(i, 21) - 1.0f;
+            Contributors c;
+            sheen_store_find(s, v3(x, y, 0.0f), r.n, 0.0f, &c);
+            // Within a millionth of its edge rounding decides.
+            if (in_ellipse(x, y, angle, 0.399999f * aspect, 0.399999f)) assert_int_equal(c.n, 1);
+            if (!in_ellipse(x, y, angle, 0.400001f * aspect, 0.400001f)) assert_int_equal(c.n, 0);
+            inside += c.n;
+        }
+        assert_true(inside > 100);
+        sheen_store_destroy(&s);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_ellipse),
         cmocka_unit_test(test_enlarged_records_give_way),
         cmocka_unit_test(test_appended_records_keep_their_radii),
         cmocka_unit_test(test_reindexed_is_as_appended),
