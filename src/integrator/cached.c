@@ -5,6 +5,8 @@
 #include "integrator/converge.h"
 #include "integrator/deep.h"
 #include "integrator/first_points.h"
+#include "integrator/gather_light.h"
+#include "integrator/give_way.h"
 #include "integrator/glossy_cache.h"
 #include "integrator/irradiance_record.h"
 #include "integrator/radiance_record.h"
@@ -24,7 +26,7 @@ struct SheenCached {
     size_t n_seeds;
     bool ready;
     SheenDeep *deep;
-    SheenIrradianceMaker *irradiance;
+    SheenIrradianceMaker *irradiance, *sampled;
     SheenRadianceMaker *radiance[SHEEN_BASIS_COUNT];
 };
 
@@ -65,6 +67,7 @@ void sheen_cached_destroy(SheenCached **cached)
     SheenCached *c = cached ? *cached : NULL;
     if (!c) return;
     sheen_irradiance_maker_destroy(&c->irradiance);
+    sheen_irradiance_maker_destroy(&c->sampled);
     for (int b = 0; b < SHEEN_BASIS_COUNT; ++b) sheen_radiance_maker_destroy(&c->radiance[b]);
     sheen_deep_destroy(&c->deep);
     sheen_caches_free(&c->caches);
@@ -124,7 +127,11 @@ static SheenStatus make_ready(SheenCached *c, const ShadingPoint *at, SheenStats
     bool deeper = w->options.bounces > 1 || (w->options.bounces == 1 && c->found);
     if (deeper && w->options.secondary == SHEEN_SECONDARY_CACHE)
         status = sheen_deep_create(w, seeds, c->n_seeds ? c->n_seeds : 1, w->options.bounces - 1, stats, &c->deep);
-    if (status == SHEEN_OK) status = sheen_irradiance_maker_create(w, c->deep, &c->irradiance);
+    if (status == SHEEN_OK)
+        status = sheen_irradiance_maker_create(w, c->deep, w->options.gather_rays, SHEEN_GATHER_ERROR, &c->irradiance);
+    const float any_error = 1e6f; // no further rays
+    if (status == SHEEN_OK)
+        status = sheen_irradiance_maker_create(w, c->deep, SHEEN_SAMPLED_RAYS, any_error, &c->sampled);
     for (int b = 0; b < SHEEN_BASIS_COUNT && status == SHEEN_OK && w->glossy; ++b)
         status = sheen_radiance_maker_create(w, c->deep, c->caches.radiance[b], &c->radiance[b]);
     c->ready = status == SHEEN_OK;
@@ -224,6 +231,39 @@ SheenStatus sheen_cached_settle(SheenCached *c, SheenStats *stats)
     return status;
 }
 
+// Shows points that are to be sampled, and leaves the others in the list.
+static SheenStatus sample(SheenCached *c, const SheenWork *work, const PictureCaches *caches, SeenPoints *uncovered,
+                          Picture *picture, SheenStats *stats)
+{
+    size_t n = uncovered->n_points, n_sampled = 0, n_left = 0;
+    if (n == 0) return SHEEN_OK;
+    double start = sheen_clock_seconds();
+    bool *sampled = malloc(n * sizeof *sampled);
+    ShadingPoint *points = malloc(n * sizeof *points);
+    Rgb *E = malloc(n * sizeof *E);
+    SheenStatus status = sampled && points && E ? SHEEN_OK : SHEEN_ERR_NOMEM;
+    if (status == SHEEN_OK) status = make_ready(c, &uncovered->points[0], stats);
+    if (status == SHEEN_OK)
+        status = sheen_give_way_choose(work, caches->kept->irradiance->store, uncovered->points, n, sampled);
+    for (size_t i = 0; i < n && status == SHEEN_OK; ++i) {
+        const ShadingPoint p = uncovered->points[i];
+        if (sampled[i])
+            points[n_sampled++] = p;
+        else
+            uncovered->points[n_left++] = p;
+    }
+    if (status == SHEEN_OK) status = sheen_give_way_gather(work, c->sampled, points, n_sampled, E, stats);
+    if (status == SHEEN_OK) {
+        uncovered->n_points = n_left;
+        sheen_shade_sampled(points, n_sampled, E, picture, stats);
+    }
+    free(sampled);
+    free(points);
+    free(E);
+    stats->time_interpolate += sheen_clock_seconds() - start;
+    return status;
+}
+
 // Shades samples of each pixel from `first` on, and fills the picture's own caches where it sees what no record covers.
 static SheenStatus shade(SheenCached *c, const SheenWork *work, SheenCaches *own, uint32_t first, Picture *picture,
                          SheenStats *stats)
@@ -231,6 +271,8 @@ static SheenStatus shade(SheenCached *c, const SheenWork *work, SheenCaches *own
     SeenPoints uncovered = {0};
     const PictureCaches caches = {&c->caches, own};
     SheenStatus status = sheen_shade(work, c->indirect ? &caches : NULL, first, picture, &uncovered, stats);
+    // Records for the first samples serve the further ones too; those that these still need serve no others.
+    if (status == SHEEN_OK && first > 0) status = sample(c, work, &caches, &uncovered, picture, stats);
     if (status == SHEEN_OK && uncovered.n_points + uncovered.n_glossy > 0) {
         if (!own->irradiance) status = sheen_caches_create(work, own);
         const Target to = {own, &c->caches, 1, false};

@@ -39,7 +39,7 @@ SHEEN_NODISCARD SheenStatus sheen_cached_settle(SheenCached *cached, SheenStats 
 /**
  * Renders a view into the film and counts into *stats, see work.h. The picture is a function of the scene, the view and
  * the settled records: what they leave uncovered, small things between the first samples of pixels, gets records of
- * the picture's own, which end with it.
+ * the picture's own, which end with it, or is sampled, see give_way.h.
  * Errors: SHEEN_ERR_NOMEM, SHEEN_ERR_CANCELLED (the film is then incomplete).
  */
 SHEEN_NODISCARD SheenStatus sheen_cached_shade(SheenCached *cached, const SheenView *view, SheenFilm *film,

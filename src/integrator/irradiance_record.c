@@ -11,13 +11,14 @@ struct SheenIrradianceMaker {
     SheenGatherer gatherer;
 };
 
-SheenStatus sheen_irradiance_maker_create(const SheenWork *work, const SheenDeep *deep, SheenIrradianceMaker **out)
+SheenStatus sheen_irradiance_maker_create(const SheenWork *work, const SheenDeep *deep, uint32_t rays, float error,
+                                          SheenIrradianceMaker **out)
 {
     *out = NULL;
     SheenIrradianceMaker *m = calloc(1, sizeof *m);
     if (!m) return SHEEN_ERR_NOMEM;
-    SheenStrata strata = sheen_strata_cosine(work->options.gather_rays);
-    if (!sheen_gatherer_init(work, deep, strata, SHEEN_GATHER_ERROR, &m->gatherer)) {
+    SheenStrata strata = sheen_strata_cosine(rays);
+    if (!sheen_gatherer_init(work, deep, strata, error, &m->gatherer)) {
         sheen_irradiance_maker_destroy(&m);
         return SHEEN_ERR_NOMEM;
     }
@@ -80,5 +81,5 @@ static SheenStatus insert(void *cache, const Record *record, const void *light)
 
 RecordKind sheen_irradiance_kind(const SheenIrradianceMaker *maker, SheenIrradianceCache *cache)
 {
-    return (RecordKind){sizeof(IrradianceLight), maker, make, cache->store, NULL, cache, insert};
+    return (RecordKind){sizeof(IrradianceLight), maker, make, cache ? cache->store : NULL, NULL, cache, insert};
 }

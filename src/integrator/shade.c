@@ -296,3 +296,13 @@ void sheen_shade_uncovered(const SheenOptions *o, const PictureCaches *caches, c
 {
     indirect_light(o, caches, uncovered, picture, NULL, stats);
 }
+
+void sheen_shade_sampled(const ShadingPoint points[], size_t n, const Rgb E[], Picture *picture, SheenStats *stats)
+{
+    SheenFilm *film = picture->film;
+    for (size_t i = 0; i < n; ++i) {
+        const ShadingPoint *p = &points[i];
+        add_reflected(p, E[i], SHEEN_AOV_INDIRECT, picture, stats);
+        film_add(film, SHEEN_AOV_TRANSPORT, p->pixel % film->width, p->pixel / film->width, rgb(0.0f, 0.0f, 1.0f));
+    }
+}

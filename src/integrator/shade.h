@@ -21,6 +21,9 @@ typedef struct PictureCaches {
 SHEEN_NODISCARD SheenStatus sheen_shade(const SheenWork *work, const PictureCaches *caches, uint32_t first,
                                         Picture *picture, SeenPoints *uncovered, SheenStats *stats);
 
+/** Adds the indirect light of points that were sampled. @param E  [n] irradiance */
+void sheen_shade_sampled(const ShadingPoint points[], size_t n, const Rgb E[], Picture *picture, SheenStats *stats);
+
 /** Adds the indirect light of points that have records by now. */
 void sheen_shade_uncovered(const SheenOptions *o, const PictureCaches *caches, const SeenPoints *uncovered,
                            Picture *picture, SheenStats *stats);
