@@ -36,7 +36,7 @@ static void use(const SheenCacheFile *file)
         for (uint32_t i = 0; i < irradiance->store->n && i < 8; ++i) {
             const Record *r = &irradiance->store->records[i];
             Contributors found;
-            sheen_store_find(irradiance->store, r->p, r->n, 0.0f, &found);
+            sheen_store_find(irradiance->store, r->p, r->n, &found);
             sheen_irradiance_interpolate(irradiance->store, irradiance->light, &found, r->p, r->n);
         }
         SheenCacheContents contents = {file->scene_hash, file->about, irradiance, {radiance, NULL}};

@@ -77,13 +77,12 @@ static inline float record_weight(float R, float d2, float cos_n)
  * Whether a point lies so far in front of (or behind) a record's surface that it sees other things than the record.
  * The tolerance of 2 % of the reach a R lets coplanar points pass whatever rounding did to them: an exact test rejects
  * half of them and doubles the number of records.
- * @param slack  metres, added to the tolerance
  * Source: ward1988, test on d_i(P), there without tolerance.
  */
-static inline bool record_in_front(const Record *r, Vec3 p, Vec3 n, float slack)
+static inline bool record_in_front(const Record *r, Vec3 p, Vec3 n)
 {
     float d = v3_dot(v3_sub(p, r->p), v3_add(n, r->n)) * 0.5f;
-    return d < -0.02f * r->a * r->R - slack;
+    return d < -0.02f * r->a * r->R;
 }
 
 #endif

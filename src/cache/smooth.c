@@ -61,7 +61,7 @@ static bool find_teachers(const Smoothing *s, uint32_t own, Teachers *out)
     const Record *at = &s->wide->records[own];
     bool alike = s->radiance && s->radiance->basis == SHEEN_BASIS_HSH;
     Contributors near;
-    sheen_store_find(s->wide, at->p, at->n, 0.0f, &near);
+    sheen_store_find(s->wide, at->p, at->n, &near);
     float weights = 0.0f;
     out->n = 0;
     for (unsigned i = 0; i < near.n; ++i) {

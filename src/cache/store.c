@@ -173,7 +173,7 @@ static void add_contributor(uint32_t record, float w, Contributors *out)
 /** What is asked of the store. */
 typedef struct Query {
     Vec3 p, n;
-    float slack, most;
+    float most;
 } Query;
 
 // Takes a record when it serves the point.
@@ -182,7 +182,7 @@ static void consider(const SheenRecordStore *s, uint32_t record, const Query *q,
     const Record *r = &s->records[record];
     unsigned cover;
     float cos_n = v3_dot(q->n, r->n), w = influence(r, q->most, record_distance2(r, q->p), cos_n, &cover);
-    if (!(w > 0.0f) || cos_n < s->cos_min || record_in_front(r, q->p, q->n, q->slack)) return;
+    if (!(w > 0.0f) || cos_n < s->cos_min || record_in_front(r, q->p, q->n)) return;
     add_contributor(record, minf(w, weight_max), out);
     out->cover += cover;
 }
@@ -209,14 +209,14 @@ static void find(const SheenRecordStore *s, const Query *q, Contributors *out)
             consider_block(s, &t->blocks[b], q, out);
 }
 
-void sheen_store_find(const SheenRecordStore *s, Vec3 p, Vec3 n, float slack, Contributors *out)
+void sheen_store_find(const SheenRecordStore *s, Vec3 p, Vec3 n, Contributors *out)
 {
-    find(s, &(Query){p, n, slack, INFINITY}, out);
+    find(s, &(Query){p, n, INFINITY}, out);
 }
 
 void sheen_store_find_near(const SheenRecordStore *s, Vec3 p, Vec3 n, float most, Contributors *out)
 {
-    find(s, &(Query){p, n, 0.0f, most}, out);
+    find(s, &(Query){p, n, most}, out);
 }
 
 RecordExpected sheen_store_expect(const SheenRecordStore *s, Vec3 p)

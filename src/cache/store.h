@@ -63,10 +63,9 @@ typedef struct Contributors {
 /**
  * Finds the records with w > 1/a at (p, n), none in front of which the point lies. More than SHEEN_CONTRIBUTORS_MAX:
  * the heaviest are kept. Thread-safe.
- * @param n      unit normal of the lit side
- * @param slack  metres that p may lie off its surface: added to the tolerance of the test for points in front
+ * @param n  unit normal of the lit side
  */
-void sheen_store_find(const SheenRecordStore *store, Vec3 p, Vec3 n, float slack, Contributors *out);
+void sheen_store_find(const SheenRecordStore *store, Vec3 p, Vec3 n, Contributors *out);
 
 /**
  * The same for a picture that resolves more than the one that the records were made for: those whose radius was

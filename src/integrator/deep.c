@@ -134,7 +134,7 @@ static bool is_behind(const SheenDeep *d, uint32_t record, Vec3 p)
 static void find(const SheenDeep *d, Vec3 p, Vec3 n, Contributors *out)
 {
     Contributors all;
-    sheen_store_find(d->store, p, n, 0.0f, &all);
+    sheen_store_find(d->store, p, n, &all);
     out->n = out->cover = 0;
     out->weight_sum = 0.0f;
     for (unsigned i = 0; i < all.n; ++i) {

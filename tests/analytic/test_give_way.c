@@ -123,7 +123,7 @@ static void test_light(void **state)
         const DiffusePoint *p = &s.points.points[i].point;
         Contributors c;
         assert_memory_equal(&E[i], &other[n - 1 - i], sizeof E[i]);
-        sheen_store_find(cache->store, p->p, p->n, 0.0f, &c);
+        sheen_store_find(cache->store, p->p, p->n, &c);
         sampled += (double)rgb_luminance(E[i]);
         read += (double)rgb_luminance(sheen_irradiance_interpolate(cache->store, cache->light, &c, p->p, p->n));
     }

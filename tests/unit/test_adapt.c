@@ -91,11 +91,11 @@ static void test_refined_records(void **state)
     assert_int_equal(sheen_store_reindex(s), SHEEN_OK);
     // Along the plane records reach a R: .2 and .4.
     Contributors c;
-    sheen_store_find(s, v3(-0.71f, 0, 0), v3(0, 0, 1), 0.0f, &c);
+    sheen_store_find(s, v3(-0.71f, 0, 0), v3(0, 0, 1), &c);
     assert_int_equal(c.n, 0);
-    sheen_store_find(s, v3(-0.69f, 0, 0), v3(0, 0, 1), 0.0f, &c);
+    sheen_store_find(s, v3(-0.69f, 0, 0), v3(0, 0, 1), &c);
     assert_int_equal(c.n, 1);
-    sheen_store_find(s, v3(0.89f, 0, 0), v3(0, 0, 1), 0.0f, &c);
+    sheen_store_find(s, v3(0.89f, 0, 0), v3(0, 0, 1), &c);
     assert_int_equal(c.n, 1);
     // What a new record there may be expected to be like: as accurate as the nearest.
     assert_true(sheen_store_expect(s, v3(-0.45f, 0, 0)).a == 0.1f);
@@ -137,7 +137,7 @@ static unsigned pair_pass(Pair *p, SheenOctree *const touched[2], Contributors *
 {
     assert_int_equal(sheen_adapt_pass(&p->work, &p->view, touched, &(AdaptCache){.irradiance = p->cache}), SHEEN_OK);
     assert_int_equal(sheen_store_reindex(p->cache->store), SHEEN_OK);
-    sheen_store_find(p->cache->store, p->point.point.p, p->point.point.n, 0.0f, c);
+    sheen_store_find(p->cache->store, p->point.point.p, p->point.point.n, c);
     return c->n;
 }
 

@@ -72,7 +72,7 @@ static Rgb look_up_irradiance(const SheenIrradianceCache *c, uint32_t i, unsigne
 {
     Vec3 p = kit_point(i), n = kit_normal(i);
     Contributors found;
-    sheen_store_find(c->store, p, n, 0.0f, &found);
+    sheen_store_find(c->store, p, n, &found);
     *met += found.n;
     return sheen_irradiance_interpolate(c->store, c->light, &found, p, n);
 }
@@ -83,7 +83,7 @@ static Rgb look_up_radiance(const SheenRadianceCache *c, uint32_t i)
     Rgb lobe[16];
     for (uint32_t k = 0; k < 16; ++k) lobe[k] = rgb_gray(kit_unit(i, 50 + k));
     Contributors found;
-    sheen_store_find(c->store, p, n, 0.0f, &found);
+    sheen_store_find(c->store, p, n, &found);
     return sheen_radiance_reflect(c, &found, p, n, &(RadianceLobe){4, lobe});
 }
 

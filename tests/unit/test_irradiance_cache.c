@@ -90,11 +90,10 @@ static void test_records_in_front(void **state)
         Lit r = flat_record(q, n, 1.0f, 1.0f);
         float x = A * (random_unit(i, 6) - 0.5f), y = A * (random_unit(i, 7) - 0.5f);
         Vec3 p = v3_mad(v3_mad(q, x, f.t), y, f.b);
-        assert_false(record_in_front(&r.at, p, n, 0.0f));
-        assert_true(record_in_front(&r.at, v3_mad(p, -0.05f * A, n), n, 0.0f));
-        assert_false(record_in_front(&r.at, v3_mad(p, -0.05f * A, n), n, 0.05f * A)); // the slack adds to the tolerance
-        assert_true(record_in_front(&r.at, v3_mad(p, -0.1f * A, n), n, 0.05f * A));
-        assert_false(record_in_front(&r.at, v3_mad(p, 0.05f * A, n), n, 0.0f));
+        assert_false(record_in_front(&r.at, p, n));
+        assert_true(record_in_front(&r.at, v3_mad(p, -0.05f * A, n), n));
+        assert_false(record_in_front(&r.at, v3_mad(p, -0.01f * A, n), n)); // within the tolerance
+        assert_false(record_in_front(&r.at, v3_mad(p, 0.05f * A, n), n));
     }
 }
 
@@ -180,7 +179,7 @@ static void find_against_all(bool clamping)
     for (uint32_t i = 0; i < 2000; ++i) {
         Vec3 p = random_point(i + N), n = turned(v3(0, 0, 1), 0.1f * random_unit(i, 12));
         Contributors found;
-        sheen_store_find(c->store, p, n, 0.0f, &found);
+        sheen_store_find(c->store, p, n, &found);
         assert_in_range(found.n, 0, SHEEN_CONTRIBUTORS_MAX - 1); // all of them fit
         unsigned char met[N] = {0};
         float sum = 0.0f;
@@ -216,7 +215,7 @@ static void test_empty_cache(void **state)
     (void)state;
     SheenIrradianceCache *c = cache_begin(false);
     Contributors found;
-    sheen_store_find(c->store, v3(0, 0, 0), v3(0, 0, 1), 0.0f, &found);
+    sheen_store_find(c->store, v3(0, 0, 0), v3(0, 0, 1), &found);
     assert_int_equal(found.n, 0);
     assert_true(found.weight_sum == 0.0f);
     assert_true(rgb_is_black(interpolate(c, &found, v3(0, 0, 0), v3(0, 0, 1))));
@@ -234,7 +233,7 @@ static void test_too_many_contributors(void **state)
         insert(c, &r);
     }
     Contributors found;
-    sheen_store_find(c->store, v3(0, 0, 0), v3(0, 0, 1), 0.0f, &found);
+    sheen_store_find(c->store, v3(0, 0, 0), v3(0, 0, 1), &found);
     assert_int_equal(found.n, SHEEN_CONTRIBUTORS_MAX);
     assert_true(fabsf(interpolate(c, &found, v3(0, 0, 0), v3(0, 0, 1)).r - 2.0f) < 1e-5f);
     sheen_irradiance_cache_destroy(&c);
@@ -253,7 +252,7 @@ static void test_small_record_among_many_large(void **state)
     Lit small = flat_record(v3(0, 0, 0), v3(0, 0, 1), 0.01f, 1.0f);
     insert(c, &small);
     Contributors found;
-    sheen_store_find(c->store, v3(0, 0, 0), v3(0, 0, 1), 0.0f, &found);
+    sheen_store_find(c->store, v3(0, 0, 0), v3(0, 0, 1), &found);
     assert_int_equal(found.n, SHEEN_CONTRIBUTORS_MAX);
     // 31 others weigh at most 1 / .05 - 1 / .15 = 13.3 each beside its million, and say 100 times as much: 1.04.
     assert_true(fabsf(interpolate(c, &found, v3(0, 0, 0), v3(0, 0, 1)).r - 1.0f) < 0.05f);
@@ -274,7 +273,7 @@ static void test_interpolation_at_a_record(void **state)
     Contributors found;
     for (int i = 0; i < 2; ++i) {
         const Record *at = &c->store->records[i];
-        sheen_store_find(c->store, at->p, at->n, 0.0f, &found);
+        sheen_store_find(c->store, at->p, at->n, &found);
         assert_int_equal(found.n, 2);
         // The other's weight is 1 / 0.05 - 1 / 0.15 against a million.
         Rgb E = interpolate(c, &found, at->p, at->n);
@@ -282,7 +281,7 @@ static void test_interpolation_at_a_record(void **state)
     }
     // Half way both count alike.
     Vec3 middle = v3(0.025f, 0, 0);
-    sheen_store_find(c->store, middle, r.at.n, 0.0f, &found);
+    sheen_store_find(c->store, middle, r.at.n, &found);
     assert_true(fabsf(interpolate(c, &found, middle, r.at.n).g - 2.0f) < 1e-4f);
     sheen_irradiance_cache_destroy(&c);
 }
@@ -307,7 +306,7 @@ static void test_no_seams(void **state)
             Vec3 p = way ? v3(0, 0, 0) : v3(0.2f * t, 0, 0);
             Vec3 n = way ? turned(up, 0.25f * t) : up;
             Contributors found;
-            sheen_store_find(c->store, p, n, 0.0f, &found);
+            sheen_store_find(c->store, p, n, &found);
             assert_in_range(found.n, 1, 2);
             float E = interpolate(c, &found, p, n).g;
             // The function falls from 1 to 0 with a slope of some 10 at most: 0.005 a step.
@@ -399,19 +398,19 @@ static void test_enlarged_record(void **state)
     dark.at.R_sure = 0.1f;
     insert(c, &dark);
     Contributors found;
-    sheen_store_find(c->store, v3(-0.2f * A, 0, 0), n, 0.0f, &found);
+    sheen_store_find(c->store, v3(-0.2f * A, 0, 0), n, &found);
     assert_int_equal(found.n, 1);
     assert_int_equal(found.cover, 1);
     insert(c, &dark);
-    sheen_store_find(c->store, v3(-0.2f * A, 0, 0), n, 0.0f, &found);
+    sheen_store_find(c->store, v3(-0.2f * A, 0, 0), n, &found);
     assert_int_equal(found.cover, 2);
     insert(c, &open);
     // Between the dark record's own reach and its enlarged one the open record says what is there, to a thousandth.
-    sheen_store_find(c->store, v3(0.2f * A, 0, 0), n, 0.0f, &found);
+    sheen_store_find(c->store, v3(0.2f * A, 0, 0), n, &found);
     assert_int_equal(found.n, 3);
     assert_true(interpolate(c, &found, v3(0.2f * A, 0, 0), n).g > 0.997f);
     // At the dark record it is dark.
-    sheen_store_find(c->store, v3(1e-4f * A, 0, 0), n, 0.0f, &found);
+    sheen_store_find(c->store, v3(1e-4f * A, 0, 0), n, &found);
     assert_true(interpolate(c, &found, v3(1e-4f * A, 0, 0), n).g < 0.01f);
     sheen_irradiance_cache_destroy(&c);
 }

@@ -67,8 +67,8 @@ static unsigned differences(const SheenRecordStore *a, const SheenRecordStore *b
     for (uint32_t i = 0; i < POINTS; ++i) {
         Vec3 p = random_point(i + N), normal = random_normal(i + N);
         Contributors x, y;
-        sheen_store_find(a, p, normal, 0.0f, &x);
-        sheen_store_find(b, p, normal, 0.0f, &y);
+        sheen_store_find(a, p, normal, &x);
+        sheen_store_find(b, p, normal, &y);
         bool same = x.n == y.n && x.cover == y.cover && memcmp(&x.weight_sum, &y.weight_sum, sizeof x.weight_sum) == 0;
         for (unsigned k = 0; k < x.n && same; ++k)
             same = x.record[k] == y.record[k] && memcmp(&x.weight[k], &y.weight[k], sizeof x.weight[k]) == 0;
@@ -129,7 +129,7 @@ static void test_reindex_of_an_empty_store(void **state)
     SheenRecordStore *s = store_begin();
     assert_int_equal(sheen_store_reindex(s), SHEEN_OK);
     Contributors found;
-    sheen_store_find(s, v3(0, 0, 0), v3(0, 0, 1), 0.0f, &found);
+    sheen_store_find(s, v3(0, 0, 0), v3(0, 0, 1), &found);
     assert_int_equal(found.n, 0);
     sheen_store_destroy(&s);
 }
@@ -182,7 +182,7 @@ static void test_ellipse(void **state)
         for (uint32_t i = 0; i < POINTS; ++i) {
             float x = 2.0f * random_unit(i, 20) - 1.0f, y = 2.0f * random_unit(i, 21) - 1.0f;
             Contributors c;
-            sheen_store_find(s, v3(x, y, 0.0f), r.n, 0.0f, &c);
+            sheen_store_find(s, v3(x, y, 0.0f), r.n, &c);
             // Within a millionth of its edge rounding decides.
             if (in_ellipse(x, y, angle, 0.399999f * aspect, 0.399999f)) assert_int_equal(c.n, 1);
             if (!in_ellipse(x, y, angle, 0.400001f * aspect, 0.400001f)) assert_int_equal(c.n, 0);
