@@ -72,6 +72,21 @@ def widen(mask):
     return np.any([padded[i:i + rows, j:j + columns] for i in range(3) for j in range(3)], axis=0)
 
 
+def narrow(mask, by):
+    """The mask without pixels that are nearer than this to one outside."""
+    for _ in range(by):
+        mask = ~widen(~mask)
+    return mask
+
+
+def second_differences(layer, axis, step):
+    """f(x - step) - 2 f(x) + f(x + step) along an axis; zero where the picture ends."""
+    layer = np.moveaxis(layer, axis, 0)
+    out = np.zeros_like(layer)
+    out[step:-step] = layer[:-2 * step] - 2 * layer[step:-step] + layer[2 * step:]
+    return np.moveaxis(out, 0, axis)
+
+
 def usable_blocks(left_out):
     """Blocks without a pixel of the mask, or one beside it."""
     return ~blocks(widen(left_out)).any(axis=2)

@@ -8,7 +8,7 @@
 #include <string.h>
 
 enum {
-    STRIDE = 2, // no reach is below 4 pixels: every second pixel both ways misses no overlap that matters
+    STRIDE = 2, // below reaches of 4 pixels, the least by default: every second pixel misses no overlap that matters
     BLOCK = 256 // points an item
 };
 

@@ -73,7 +73,7 @@ SheenStatus sheen_give_way_choose(const SheenWork *work, const SheenRecordStore 
 
 typedef struct Gathers {
     const SheenWork *work;
-    RecordKind kind;
+    const SheenIrradianceMaker *maker;
     const ShadingPoint *points; // [n]
     size_t n;
     Rgb *E;            // [n]
@@ -87,12 +87,7 @@ static void gather_task(void *user, size_t item, unsigned worker)
         const ShadingPoint *p = &g->points[i];
         uint32_t key = hash_combine(g->work->options.seed ^ 0x51a3u, p->pixel);
         key = hash_combine(hash_combine(key, p->sample), p->branch);
-        Record record;
-        IrradianceLight light;
-        g->kind.make(g->kind.maker, p, g->work->options.accuracy, key, worker, &g->stats[worker], &record, &light);
-        const SheenRecordStore alone = {.records = &record, .n = 1};
-        const Contributors one = {.n = 1, .record = {0}, .weight = {1.0f}, .weight_sum = 1.0f};
-        g->E[i] = sheen_irradiance_interpolate_bent(&alone, &light, &one, p->point.p, p->point.n, p->point.bent);
+        g->E[i] = sheen_irradiance_sample(g->maker, p, key, worker, &g->stats[worker]);
     }
 }
 
@@ -100,7 +95,7 @@ SheenStatus sheen_give_way_gather(const SheenWork *work, const SheenIrradianceMa
                                   size_t n, Rgb E[], SheenStats *stats)
 {
     unsigned workers = sheen_pool_size(work->pool);
-    Gathers g = {work, sheen_irradiance_kind(maker, NULL), points, n, E, calloc(workers, sizeof *g.stats)};
+    Gathers g = {work, maker, points, n, E, calloc(workers, sizeof *g.stats)};
     if (!g.stats) return SHEEN_ERR_NOMEM;
     bool done = sheen_pool_run(work->pool, (n + BLOCK - 1) / BLOCK, gather_task, &g, work->cancel);
     for (unsigned i = 0; i < workers; ++i) sheen_stats_add(stats, &g.stats[i]);

@@ -50,28 +50,54 @@ static float set_radius(const SheenOptions *o, float footprint, const Hemisphere
     return ellipse.radius[0];
 }
 
-static void make(const void *maker, const ShadingPoint *p, float a, uint32_t key, unsigned worker, SheenStats *stats,
-                 Record *record, void *out)
+// Gathers at a point for a record of accuracy a.
+static const Hemisphere *gather(const SheenIrradianceMaker *m, const ShadingPoint *p, float a, uint32_t key,
+                                unsigned worker, SheenStats *stats, IrradianceEstimate *e)
 {
-    const SheenIrradianceMaker *m = maker;
-    const SheenOptions *o = &m->gatherer.work->options;
-    IrradianceLight *light = out;
-    float R_min = record_least_radius(o, a, p->footprint);
+    float R_min = record_least_radius(&m->gatherer.work->options, a, p->footprint);
     DiffusePoint at = p->point;
     at.bent = at.n; // whatever a map makes of the surface there
     const Hemisphere *h = sheen_gather_light(&m->gatherer, &at, R_min, key, worker, stats);
+    sheen_estimate_irradiance(h->strata, h->L, h->distance, e);
+    return h;
+}
+
+static void set_light(const SheenOptions *o, const Hemisphere *h, const IrradianceEstimate *e, IrradianceLight *light)
+{
+    BehindEstimate behind;
+    sheen_estimate_behind(h->strata, h->L, &behind);
+    *light = (IrradianceLight){.E = e->E, .behind = behind.mean};
+    light->lean = frame_to_world(&h->frame, v3(behind.lean[0], behind.lean[1], 0.0f));
+    if (o->gradients == SHEEN_GRADIENT_NONE) return;
+    estimate_world_gradient(&h->frame, e->translation, light->translation);
+    estimate_world_gradient(&h->frame, e->rotation, light->rotation);
+}
+
+static void make(const void *maker, const ShadingPoint *p, float a, uint32_t key, unsigned worker, SheenStats *stats,
+                 Record *record, void *light)
+{
+    const SheenIrradianceMaker *m = maker;
+    const SheenOptions *o = &m->gatherer.work->options;
     IrradianceEstimate e;
-    sheen_estimate_irradiance(h->strata, h->L, h->distance, &e);
+    const Hemisphere *h = gather(m, p, a, key, worker, stats, &e);
     *record = (Record){.p = p->point.p, .n = p->point.n, .a = a, .error = h->error};
     float R = set_radius(o, p->footprint, h, &e, record);
     estimate_enlarge(R, record->R_min, &e);
-    BehindEstimate behind;
-    sheen_estimate_behind(h->strata, h->L, &behind);
-    *light = (IrradianceLight){.E = e.E, .behind = behind.mean};
-    light->lean = frame_to_world(&h->frame, v3(behind.lean[0], behind.lean[1], 0.0f));
-    if (o->gradients == SHEEN_GRADIENT_NONE) return;
-    estimate_world_gradient(&h->frame, e.translation, light->translation);
-    estimate_world_gradient(&h->frame, e.rotation, light->rotation);
+    set_light(o, h, &e, light);
+}
+
+Rgb sheen_irradiance_sample(const SheenIrradianceMaker *m, const ShadingPoint *p, uint32_t key, unsigned worker,
+                            SheenStats *stats)
+{
+    const SheenOptions *o = &m->gatherer.work->options;
+    IrradianceEstimate e;
+    IrradianceLight light;
+    const Hemisphere *h = gather(m, p, o->accuracy, key, worker, stats, &e);
+    set_light(o, h, &e, &light);
+    Record here = {.p = p->point.p, .n = p->point.n};
+    const SheenRecordStore alone = {.records = &here, .n = 1};
+    const Contributors one = {.n = 1, .record = {0}, .weight = {1.0f}, .weight_sum = 1.0f};
+    return sheen_irradiance_interpolate_bent(&alone, &light, &one, p->point.p, p->point.n, p->point.bent);
 }
 
 static SheenStatus insert(void *cache, const Record *record, const void *light)
@@ -81,5 +107,5 @@ static SheenStatus insert(void *cache, const Record *record, const void *light)
 
 RecordKind sheen_irradiance_kind(const SheenIrradianceMaker *maker, SheenIrradianceCache *cache)
 {
-    return (RecordKind){sizeof(IrradianceLight), maker, make, cache ? cache->store : NULL, NULL, cache, insert};
+    return (RecordKind){sizeof(IrradianceLight), maker, make, cache->store, NULL, cache, insert};
 }

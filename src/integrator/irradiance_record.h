@@ -19,6 +19,11 @@ SHEEN_NODISCARD SheenStatus sheen_irradiance_maker_create(const SheenWork *work,
                                                           float error, SheenIrradianceMaker **out);
 void sheen_irradiance_maker_destroy(SheenIrradianceMaker **maker);
 
+/** Irradiance at a point, for its own normal, by a gather that makes no record. Thread-safe for workers of different
+ *  numbers. @param key  of its random numbers */
+Rgb sheen_irradiance_sample(const SheenIrradianceMaker *maker, const ShadingPoint *p, uint32_t key, unsigned worker,
+                            SheenStats *stats);
+
 /** What sheen_fill_run needs to fill a cache; borrows both. */
 RecordKind sheen_irradiance_kind(const SheenIrradianceMaker *maker, SheenIrradianceCache *cache);
 
